@@ -8,6 +8,7 @@ use crate::{
     math::{Bounds, Spectrum, SpectrumExt, Vec3},
     sampling::{Stream, stream::Purpose},
     scene::{Scene, build::Setup, lights::Light},
+    settings::options::Sky,
     shape::{Ray, SurfacePoint},
     transport::{Options, Segment, Strategies, profiles::Everything},
 };
@@ -161,7 +162,9 @@ impl Look<'_> {
         stream: &mut Stream,
     ) -> Option<Found> {
         let scene = &self.setup.scene;
-        let Some(sample) = scene.lights.sample_emitter(&scene.geometry, point.position, stream) else {
+        let Some(sample) =
+            scene.lights.sample_emitter(&scene.geometry, point.position, Sky::default(), stream)
+        else {
             return self.are_all_lamps().then_some((Cause::Away, 0.0, 0.0));
         };
         let (direction, squared) = sample.point.seen_from(point.position)?;

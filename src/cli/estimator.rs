@@ -10,7 +10,7 @@ use crate::{
     error::{Error, Result},
     film::layer::Content,
     learning::{
-        pilot::{self, Choice, Report},
+        pilot::{self, Choice, Decided, Report},
         training,
     },
     passes::{Settings, budget::Budget},
@@ -18,7 +18,7 @@ use crate::{
     scene::build::Setup,
     settings::{Overrides, integrator::Restriction},
     transport::{
-        Algorithm, Connections, Effort, Guiding, Heuristic, Options, Strategies, equiangular_applies,
+        Algorithm, Connections, Effort, Guiding, Heuristic, Options, Sky, Strategies, equiangular_applies,
         profiles::{Needs, ProfileName},
         strategy::StrategyKind,
     },
@@ -81,6 +81,14 @@ pub struct Estimator {
     /// a small opening. The expected image is the same.
     #[arg(long, value_name = "NAME", value_parser = one_of(&STARTS), help_heading = heading::STUDIES)]
     pub starts: Option<bool>,
+
+    /// How light of the sky is found, or of whatever else surrounds a scene that has other emitters too
+    /// [default: a pilot decides; next-event with --strategies]
+    ///
+    /// next-event: camera subpaths hit it, and the strategy next-event connects to it; hit: they hit it, and next-event is left to
+    /// the other emitters. The expected image is the same. White clouds under sun and sky have less noise with hit.
+    #[arg(long, value_name = "NAME", value_parser = one_of(&Sky::NAMES), help_heading = heading::STUDIES)]
+    pub sky: Option<Sky>,
 
     /// When path guiding is used: walks sample directions that training found to bring light
     /// [default: the scene's, or auto with gather and with the pilot of bdpt, else never]
@@ -212,7 +220,12 @@ impl Estimator {
         if !self.strategies.is_empty() || algorithm.is_preview() || !is_judged {
             return None;
         }
-        Some(pilot::choose(&setup.scene, &setup.film, settings, self.starts))
+        Some(pilot::choose(
+            &setup.scene,
+            &setup.film,
+            settings,
+            Decided { starts: self.starts, sky: self.sky(setup, settings.options.strategies) },
+        ))
     }
 
     /// The same without a pilot: all strategies that are not left out.
@@ -258,7 +271,8 @@ impl Estimator {
         let connections = self.connections(scene, strategies);
         let hide_emitters = (self.hide_emitters || scene.hide_emitters) && !self.no_hide_emitters;
         let guide = self.guiding(scene, algorithm, heuristic)?;
-        let effort = Effort { guide, learnt_starts: self.learnt_starts(strategies), ..scene.effort };
+        let sky = self.sky(setup, strategies).unwrap_or(scene.effort.sky);
+        let effort = Effort { guide, learnt_starts: self.learnt_starts(strategies), sky, ..scene.effort };
         Ok(Options {
             algorithm,
             strategies,
@@ -279,6 +293,18 @@ impl Estimator {
         }
         let wanted = self.connections.unwrap_or(scene.connections);
         if strategies.connection { wanted } else { Connections::default() }
+    }
+
+    /// What --sky says, where that means anything.
+    fn sky(&self, setup: &Setup, strategies: Strategies) -> Option<Sky> {
+        let applies =
+            strategies.emitter_hit && strategies.next_event && setup.scene.lights.has_lamps_besides_sky();
+        if self.sky.is_some() && !applies {
+            complain(
+                "warning: --sky has no effect: it needs the strategies hit and next-event, and an emitter besides the sky",
+            );
+        }
+        self.sky.filter(|_| applies)
     }
 
     fn learnt_starts(&self, strategies: Strategies) -> bool {

@@ -11,7 +11,7 @@ use crate::{
     render::{Image, Precision},
     sampling::Basis,
     scene::build::Setup,
-    transport::{Algorithm, Connections, Options},
+    transport::{Algorithm, Connections, Options, Sky},
 };
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -80,6 +80,9 @@ fn extend(settings: &mut Value, setup: &Setup, options: &Options) {
     if options.effort.learnt_starts && settings["chosen_by_pilot"].is_null() {
         settings["learnt_starts"] = true.into();
     }
+    if options.effort.sky == Sky::Hit && settings["chosen_by_pilot"].is_null() {
+        settings["sky"] = "hit".into();
+    }
     if options.effort.is_guided() {
         settings["guide"] = true.into();
         if options.basis != Basis::default() {
@@ -98,6 +101,9 @@ pub(super) fn by_pilot(Choice { strategies, effort, .. }: Choice) -> Value {
     });
     if effort.learnt_starts {
         chosen["learnt_starts"] = true.into();
+    }
+    if effort.sky == Sky::Hit {
+        chosen["sky"] = "hit".into();
     }
     chosen
 }
@@ -158,7 +164,7 @@ pub(super) fn without_window(made: &Value) -> Value {
 /// made otherwise are of the same image.
 fn of_image(settings: &Value) -> Value {
     let mut settings = settings.clone();
-    for chosen in ["chosen_by_pilot", "guide", "basis", "learnt_starts"] {
+    for chosen in ["chosen_by_pilot", "guide", "basis", "learnt_starts", "sky"] {
         settings[chosen].take();
     }
     settings

@@ -92,6 +92,11 @@ impl<'a> Follower<'a> {
         }
     }
 
+    /// See [`Lights::without_sky`], from the last vertex.
+    pub(super) fn without_sky(&self, light: u32) -> f32 {
+        self.lights.without_sky(light, self.last)
+    }
+
     fn joined(&self, sample: &EmitterSample, reference: Vec3) -> Option<Followed> {
         let (direction, _) = sample.point.seen_from(reference)?;
         Some(self.found(sample, reference, -direction))

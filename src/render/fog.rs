@@ -8,7 +8,7 @@ use crate::{
     passes::{Settings, compiled::Compiled, pass::Outcome},
     sampling::{Stream, stream::Purpose},
     scene::{Scene, lights::EmitterSample},
-    settings::integrator::FogSettings,
+    settings::{integrator::FogSettings, options::Sky},
     shape::{Ray, SurfacePoint},
     transport::{NullCrossing, Segment, profiles::Everything},
 };
@@ -167,7 +167,7 @@ impl<'a> Preview<'a> {
             let sky = self
                 .scene
                 .lights
-                .infinity_hit(direction, segment.ray().origin)
+                .infinity_hit(direction, segment.ray().origin, Sky::default())
                 .filter(|_| !segment.is_hidden());
             return Some(End::Radiance(sky.map_or(Spectrum::ZERO, |sample| sample.value)));
         };
@@ -202,7 +202,8 @@ impl<'a> Preview<'a> {
     fn emitted(&self, point: &SurfacePoint, ray: &Ray) -> Spectrum {
         let Scene { lights, geometry, .. } = self.scene;
         let light = self.scene.surface(point.shape).emitter;
-        let sample = light.and_then(|light| lights.surface_hit(geometry, light, point, ray.origin));
+        let sample =
+            light.and_then(|light| lights.surface_hit(geometry, light, point, ray.origin, Sky::default()));
         sample.map_or(Spectrum::ZERO, |sample| sample.value / sample.cosine)
     }
 
@@ -213,7 +214,7 @@ impl<'a> Preview<'a> {
         let reference = point.position;
         if lights.all.len() > LIGHTS_PER_POINT {
             let mut draw = |_| {
-                let sample = lights.sample_emitter(geometry, reference, stream)?;
+                let sample = lights.sample_emitter(geometry, reference, Sky::default(), stream)?;
                 even_radiance(&lights.all[sample.light as usize].emitter).is_none().then_some(sample)
             };
             let samples = (0..LIGHTS_PER_POINT).filter_map(&mut draw);

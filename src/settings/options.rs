@@ -140,6 +140,22 @@ impl Connections {
     pub const NAMES: [(&'static str, Self); 2] = [("cached", Self::Cached), ("all", Self::All)];
 }
 
+/// How camera subpaths find the light of what surrounds the scene, where there are other emitters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sky {
+    /// They hit it, and next-event estimation connects to it.
+    #[default]
+    NextEvent,
+    /// They hit it: next-event estimation is left to other emitters. Walks in white clouds find an even sky with hardly any noise,
+    /// and each of their vertices connects to the sun.
+    Hit,
+}
+
+impl Sky {
+    /// Each as typed.
+    pub const NAMES: [(&'static str, Self); 2] = [("next-event", Self::NextEvent), ("hit", Self::Hit)];
+}
+
 /// When walks follow a guide.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Guiding {
@@ -171,6 +187,8 @@ pub struct Effort {
     pub connections: u32,
     /// Light subpaths start where, as a pilot learns, light reaches the image.
     pub learnt_starts: bool,
+    /// How the environment is found.
+    pub sky: Sky,
     /// When walks follow a guide, which is learnt.
     pub guide: Guiding,
 }
@@ -182,6 +200,7 @@ impl Effort {
         light_walks: 1.0,
         connections: 1,
         learnt_starts: false,
+        sky: Sky::NextEvent,
         guide: Guiding::Never,
     };
 

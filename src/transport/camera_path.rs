@@ -146,8 +146,8 @@ impl<P: Profile, R: Observer> Visitor<P> for CameraPath<'_, P, R> {
 
     fn escape(&mut self, subpath: &Subpath<P::MisSums>) {
         self.observer.escape(&subpath.arrival());
-        let (lights, previous) = (&self.estimator.scene.lights, self.previous);
-        self.emission(subpath, || lights.infinity_hit(-subpath.incoming, previous));
+        let (lights, previous, sky) = (&self.estimator.scene.lights, self.previous, self.estimator.sky);
+        self.emission(subpath, || lights.infinity_hit(-subpath.incoming, previous, sky));
     }
 }
 
@@ -204,8 +204,8 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
         point: &SurfacePoint,
         previous: Vec3,
     ) {
-        let Scene { lights, geometry, .. } = self.estimator.scene;
-        self.emission(subpath, || lights.surface_hit(geometry, light, point, previous));
+        let (Scene { lights, geometry, .. }, sky) = (self.estimator.scene, self.estimator.sky);
+        self.emission(subpath, || lights.surface_hit(geometry, light, point, previous, sky));
     }
 
     /// s = 0 in a medium: one point of each flight is sampled, in proportion to a bound on the emission. A
@@ -261,7 +261,7 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
         stream: &mut Stream,
     ) -> Option<(Subpath<P::MisSums>, EmitterSample)> {
         let (scene, position) = (self.estimator.scene, part.interval.segment.at(t));
-        let sample = scene.lights.volume_hit(light, position, departure.position)?;
+        let sample = scene.lights.volume_hit(light, position, departure.position, self.estimator.sky)?;
         let state = part.until::<P>(scene, t, self.hero, stream);
         let sigma_t = connect::rate_at::<P>(&sample.point);
         let at = Arrival { position: Some(position), cosine: 1.0, sigma_t };
@@ -327,7 +327,7 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
         let Scene { lights, geometry, .. } = self.estimator.scene;
         let t = vertex.subpath.edges + 1;
         self.observer.start();
-        if let Some(sample) = lights.sample_emitter(geometry, vertex.position(), stream) {
+        if let Some(sample) = lights.sample_emitter(geometry, vertex.position(), self.estimator.sky, stream) {
             let contribution = self.join_emitter(vertex, &sample, stream);
             self.observer.contribute(1, t, Meeting::Emitter(&sample), contribution.as_ref());
         }

@@ -99,7 +99,7 @@ impl<P: Profile> Estimator<'_, P> {
     /// n_e P_j / Q_j e_j(t): in units of next-event estimation, but for the density of the flight.
     #[inline]
     fn pivoted(&self, light: u32, position: Vec3, direction: Vec3, distance: f32) -> f32 {
-        self.scene.lights.pivot(light, position).map_or(0.0, |(pivot, over_connect)| {
+        self.scene.lights.pivot(light, position, self.sky).map_or(0.0, |(pivot, over_connect)| {
             self.counts.equiangular * over_connect * pivot.pdf(position, direction, distance)
         })
     }
@@ -123,7 +123,7 @@ impl<P: Profile> Estimator<'_, P> {
         let Projection { ray, distance_squared, pdf, .. } = *seen;
         let lights = &self.scene.lights;
         let pivoted = self.pivoted(start.light, position, ray.direction, distance_squared.sqrt());
-        let connect = lights.connect_over_start(&self.scene.geometry, start, position);
+        let connect = lights.connect_over_start(&self.scene.geometry, start, position, self.sky);
         let density = pivoted * connect * pdf / distance_squared * end.inv_pdf;
         P::MisSums::of(StrategyKind::Equiangular, P::Channels::splat(density))
     }
@@ -216,7 +216,7 @@ impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
         let (scene, counts) = (self.estimator.scene, &self.estimator.counts);
         let (direction, distance_squared) = sample.point.seen_from(vertex.position())?;
         let mut camera = connect::vertex_end(self.estimator, vertex, direction, Transport::Radiance)?;
-        let (_, over_connect) = scene.lights.pivot(sample.light, vertex.position())?;
+        let (_, over_connect) = scene.lights.pivot(sample.light, vertex.position(), self.estimator.sky)?;
         let next_event = camera.pdf_over_hero.scaled(counts.next_event / over_connect);
         camera.beside = Some(P::MisSums::of(StrategyKind::NextEvent, next_event));
         let light =

@@ -16,7 +16,7 @@ use crate::{
     },
     settings::{
         heuristic::Heuristic,
-        options::{Connections, Survival},
+        options::{Connections, Sky, Survival},
     },
 };
 use std::sync::Arc;
@@ -49,6 +49,8 @@ pub struct Estimator<'a, P: Profile> {
     pub(super) forced_interaction: bool,
     /// Which starts of light subpaths reach the image; none if they start as their emitters would have it.
     pub(super) starts: Option<Arc<Starts>>,
+    /// How the environment is found.
+    pub(super) sky: Sky,
     /// What walks follow.
     pub(super) guide: Option<Arc<Guide>>,
     /// What camera subpaths end in.

@@ -122,7 +122,8 @@ impl<P: Profile, R: Observer> Visitor<P> for LightPath<'_, P, R> {
             return self.estimator.counts.connection;
         }
         let scene = self.estimator.scene;
-        let ratio = scene.lights.connect_over_start(&scene.geometry, &self.start, position);
+        let ratio =
+            scene.lights.connect_over_start(&scene.geometry, &self.start, position, self.estimator.sky);
         self.estimator.counts.next_event * ratio
     }
 

@@ -99,7 +99,7 @@ pub use vertex::Vertex;
 
 pub use crate::{
     settings::heuristic::Heuristic,
-    settings::options::{Algorithm, Connections, Effort, Guiding, Options, Strategies, Survival},
+    settings::options::{Algorithm, Connections, Effort, Guiding, Options, Sky, Strategies, Survival},
 };
 
 use crate::{
@@ -152,6 +152,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             hide_emitters,
             forced_interaction: P::MEDIA && forced_interaction,
             starts: learnt.starts,
+            sky: effort.sky,
             guide: learnt.guide.filter(|_| P::GUIDED),
             radiance: learnt.radiance.filter(|_| P::GUIDED),
             profile: std::marker::PhantomData,

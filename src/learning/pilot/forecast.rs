@@ -18,7 +18,7 @@ use crate::{
     film::Film,
     learning::tiles::Tiles,
     passes::{blocks::Blocks, compiled::Compiled},
-    settings::options::{Effort, Survival},
+    settings::options::{Effort, Sky, Survival},
     transport::{lengths, strategy::StrategyKind},
 };
 use rayon::prelude::*;
@@ -76,6 +76,7 @@ impl Error {
 struct Weighed {
     tile: u32,
     unlearnt: f32,
+    without_sky: f32,
     moment: f64,
     shares: [f32; StrategyKind::ALL.len()],
     /// The contribution itself, how often walks get as far over how often they did, and how much more often its strategy does.
@@ -264,7 +265,16 @@ impl Forecast {
             ];
             let passed_own = shares[found.kind as usize] / found.shares[found.kind as usize];
             let (moment, value) = (found.square / f64::from(passed), found.square.sqrt() as f32);
-            Weighed { tile: *tile, unlearnt: found.unlearnt, moment, shares, value, passed, passed_own }
+            Weighed {
+                tile: *tile,
+                unlearnt: found.unlearnt,
+                without_sky: found.without_sky,
+                moment,
+                shares,
+                value,
+                passed,
+                passed_own,
+            }
         };
         self.found.iter().map(weigh).collect()
     }
@@ -279,7 +289,7 @@ impl Forecast {
     /// to these, t times what the weights take it for counts, which stands in their densities.
     fn errors(&self, choice: &Choice, weighed: &[Weighed]) -> Vec<f64> {
         let mut moments = vec![0.0; self.tiles.len()];
-        let learnt = choice.effort.learnt_starts;
+        let (learnt, with_sky) = (choice.effort.learnt_starts, choice.effort.sky == Sky::NextEvent);
         // Connections to each vertex are as many, however many vertices light subpaths leave.
         let draws = self.light[index(End::AtOnce(self.survival))].kept.max(1.0)
             / self.light_work(&choice.effort).kept.max(1.0);
@@ -294,16 +304,21 @@ impl Forecast {
         };
         let mut chain = Chain { sample: u32::MAX, pixel: u32::MAX, sum: 0.0, before: 0.0 };
         for ((_, found), one) in self.found.iter().zip(weighed) {
-            let Weighed { tile, unlearnt, moment, shares, .. } = one;
+            let Weighed { tile, unlearnt, without_sky, moment, shares, .. } = one;
             let begun = if learnt { 1.0 } else { *unlearnt };
+            let joined = if with_sky { next_event } else { next_event * without_sky };
             // Written out: all choices go through all contributions.
-            let camera = shares[0] * hits + shares[1] * next_event + shares[4] * equiangular;
+            let camera = shares[0] * hits + shares[1] * joined + shares[4] * equiangular;
             let light = shares[2] * connections + shares[3] * lens;
             let density = camera + begun * light;
             let hit = shares[0] * hits / density.max(f32::MIN_POSITIVE);
             let moments = &mut moments[*tile as usize];
             *moments += moment / f64::from(density) * f64::from(1.0 + (found.expected - 1.0) * hit);
-            let own = counts[found.kind as usize];
+            let own = match found.kind {
+                StrategyKind::NextEvent => joined,
+                StrategyKind::Connection => connections * begun,
+                kind => counts[kind as usize],
+            };
             if found.kind == StrategyKind::Lens || own == 0.0 {
                 continue;
             }
@@ -311,7 +326,6 @@ impl Forecast {
                 end(chain);
                 chain = Chain { sample: found.sample, pixel: found.pixel, sum: 0.0, before: 0.0 };
             }
-            let own = if found.kind == StrategyKind::Connection { own * begun } else { own };
             let value = one.value * own / density;
             let arriving = f64::from(value * one.passed_own);
             *moments += 2.0 * arriving * chain.before;

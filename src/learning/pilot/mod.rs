@@ -14,7 +14,7 @@ use crate::{
     passes::{Settings, compiled},
     sampling::Sampler,
     scene::Scene,
-    settings::options::{Effort, Guiding, Survival},
+    settings::options::{Effort, Guiding, Sky, Survival},
     transport::{Options, Strategies, coverage, equiangular_applies, strategy::StrategyKind},
 };
 use forecast::{Forecast, PIXELS_PER_BLOCK};
@@ -111,27 +111,36 @@ pub struct Report {
 }
 
 /// The strategies among those of `settings` that are worth their time on `film`, how often, when walks end, and whether they
-/// follow a guide, for as many samples as their budget allows; whether light subpaths begin at learnt `starts` may be decided
-/// already.
-pub fn choose(scene: &Scene, film: &Film, settings: &Settings, starts: Option<bool>) -> Report {
+/// follow a guide, for as many samples as their budget allows.
+pub fn choose(scene: &Scene, film: &Film, settings: &Settings, decided: Decided) -> Report {
     let all = settings.options.strategies;
     let asks = match settings.options.effort.guide {
         Guiding::Usual => all == Strategies::BDPT,
         said => said == Guiding::Auto,
     };
     let guide = if asks { Guiding::Never } else { settings.options.effort.guide };
-    let learnt_starts = starts == Some(true) && all.need_light_walks();
-    let effort = Effort { learnt_starts, guide, ..Effort::default() };
+    let learnt_starts = decided.starts == Some(true) && all.need_light_walks();
+    let sky = decided.sky.unwrap_or_default();
+    let effort = Effort { learnt_starts, guide, sky, ..Effort::default() };
     let base = Choice { among: all, strategies: all, effort, gain: 1.0 };
     let work = settings.budget.samples_of(film.len());
     let none = Report { choice: base, candidates: Vec::new(), samples: 0.0 };
     if scene.lights.is_empty() || SHARE * work < LEAST {
         return none;
     }
-    let pilots = Pilots { scene, film, settings, starts, base, work };
+    let pilots = Pilots { scene, film, settings, decided, base, work };
     let fly = || pilots.choose(asks);
     // Renders survive a panic and say where it was.
     catch_unwind(AssertUnwindSafe(fly)).unwrap_or(none)
+}
+
+/// What a pilot finds decided already.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Decided {
+    /// Whether light subpaths begin at learnt starts.
+    pub starts: Option<bool>,
+    /// How the environment is found.
+    pub sky: Option<Sky>,
 }
 
 /// Those that are flown for one choice, and what they may choose.
@@ -140,7 +149,7 @@ struct Pilots<'a> {
     scene: &'a Scene,
     film: &'a Film,
     settings: &'a Settings,
-    starts: Option<bool>,
+    decided: Decided,
     /// All strategies, with the guide and the starts that there are before any pilot.
     base: Choice,
     /// Samples to come.
@@ -157,7 +166,8 @@ impl Pilots<'_> {
             return Self { base: Choice { effort, ..self.base }, ..*self }.choose(false);
         }
         let report = self.report(&pilot);
-        let is_remote = self.starts.is_none() && pilot.seen_subpaths().is_some_and(|seen| seen <= REMOTE);
+        let is_remote =
+            self.decided.starts.is_none() && pilot.seen_subpaths().is_some_and(|seen| seen <= REMOTE);
         let may_gain = || pilot.error_where_lit(&self.base) > STARTS_NOISE;
         if is_remote && training::is_worth(self.work, STARTS_SHARE) && may_gain() {
             self.report(&self.fly(true))
@@ -268,21 +278,27 @@ impl Pilots<'_> {
         let differ = |(light_walks, connections): &(f32, u32)| {
             (walks || *light_walks == 1.0) && (strategies.connection || *connections == 1)
         };
-        let starts: &[bool] = match self.starts {
+        let starts: &[bool] = match self.decided.starts {
             _ if !walks => &[false],
             Some(true) => &[true],
             None if knows_starts => &[false, true],
             _ => &[false],
         };
+        let is_open = self.decided.sky.is_none() && strategies.emitter_hit && strategies.next_event;
+        let skies: &[Sky] = match is_open && self.scene.lights.has_lamps_besides_sky() {
+            true => &[Sky::NextEvent, Sky::Hit],
+            false => &[self.base.effort.sky],
+        };
         let mut choices = Vec::new();
         for (light_walks, connections) in COUNTS.into_iter().filter(differ) {
             for survival in self.survivals().iter().copied() {
-                choices.extend(starts.iter().map(|learnt_starts| {
-                    let learnt_starts = *learnt_starts;
+                for (learnt_starts, sky) in
+                    starts.iter().flat_map(|starts| skies.iter().map(move |sky| (*starts, *sky)))
+                {
                     let effort =
-                        Effort { survival, light_walks, connections, learnt_starts, ..self.base.effort };
-                    Choice { strategies, effort, ..self.base }
-                }));
+                        Effort { survival, light_walks, connections, learnt_starts, sky, ..self.base.effort };
+                    choices.push(Choice { strategies, effort, ..self.base });
+                }
             }
         }
         choices
@@ -334,7 +350,8 @@ mod tests {
         let among = settings.options.strategies;
         let base = Choice { among, strategies: among, effort: Effort::default(), gain: 1.0 };
         let Setup { scene, film, .. } = setup;
-        Pilots { scene, film, settings, starts: None, base, work: f64::INFINITY }.fly(learnt_starts)
+        Pilots { scene, film, settings, decided: Decided::default(), base, work: f64::INFINITY }
+            .fly(learnt_starts)
     }
 
     #[test]
@@ -349,7 +366,7 @@ mod tests {
         let (setup, settings) = small("efficiency/glass_fog_sky.xml", Strategies::BDPT);
         let samples = |each: u64| {
             let settings = Settings { budget: Budget::samples(each), ..settings };
-            choose(&setup.scene, &setup.film, &settings, None).samples
+            choose(&setup.scene, &setup.film, &settings, Decided::default()).samples
         };
         let pixels = setup.film.len() as f64;
         assert_eq!(samples(16), 0.0);
@@ -390,6 +407,7 @@ mod tests {
             shares,
             ends: Ends::default(),
             unlearnt: 1.0,
+            without_sky: 1.0,
             kind,
             expected: 1.0,
             sample,

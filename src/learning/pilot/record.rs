@@ -30,6 +30,8 @@ pub(super) struct Found {
     pub ends: Ends,
     /// How often light subpaths would start there without learnt starts, over how often they do.
     pub unlearnt: f32,
+    /// How often next-event estimation would find its light if it left the environment alone, over how often it does.
+    pub without_sky: f32,
     /// The kind of the strategy that brought it.
     pub kind: StrategyKind,
     /// What the weights take the transmittance of its connection for, over what it was found to be.
@@ -249,13 +251,25 @@ impl Observer for Recorder<'_> {
         let Some(found) = contribution.filter(|c| c.value.is_finite()) else { return };
         let Contribution { value, shares, transmittance, .. } = found;
         let expected = found.expected.luminance() / transmittance.luminance();
-        let unlearnt = self.follower.start(s, t, &meeting).map_or(1.0, |followed| followed.unlearnt);
+        let (unlearnt, without_sky) = self.follower.start(s, t, &meeting).map_or((1.0, 1.0), |followed| {
+            (followed.unlearnt, self.follower.without_sky(followed.start.light))
+        });
         let (ends, kind, sample) = (self.ends(s, t, &meeting), meeting.kind(s, t), self.sums.len() as u32);
         let found = &mut self.recorded.found;
         let mut add = |pixel: u32, value: Spectrum| {
             let luminance = f64::from(value.luminance());
             let square = luminance * luminance;
-            found.push(Found { pixel, square, shares: *shares, ends, unlearnt, kind, expected, sample });
+            found.push(Found {
+                pixel,
+                square,
+                shares: *shares,
+                ends,
+                unlearnt,
+                without_sky,
+                kind,
+                expected,
+                sample,
+            });
         };
         if let Meeting::Lens(film) = meeting {
             if !self.is_seen {

@@ -26,6 +26,7 @@ class RenderOptions(TypedDict, total=False):
     heuristic: str | None
     connections: Literal["cached", "all"] | None
     starts: Literal["emitted", "learnt"] | None
+    sky: Literal["next-event", "hit"] | None
     basis: Literal["quadtree", "bins", "haar"] | None
     profile: str | None
     tracker: Literal["auto", "closed_form", "exact", "march", "null_collision", "residual_ratio"] | None

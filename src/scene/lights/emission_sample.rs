@@ -11,6 +11,7 @@ use crate::{
     },
     math::{Spectrum, Vec3, warp},
     sampling::Stream,
+    settings::options::Sky,
     shape::{Ray, SurfacePoint},
 };
 
@@ -236,18 +237,24 @@ impl Lights {
     /// Next-event density over start density of the point a light subpath started from, as seen from its second
     /// vertex: the ratio that turns the density of s = 2 into that of s = 1 in the weights.
     #[inline]
-    pub fn connect_over_start(&self, geometry: &Geometry, start: &EmissionSample, reference: Vec3) -> f32 {
-        let index = start.light as usize;
-        let chosen = || self.connections.probability(index, reference);
+    pub fn connect_over_start(
+        &self,
+        geometry: &Geometry,
+        start: &EmissionSample,
+        reference: Vec3,
+        sky: Sky,
+    ) -> f32 {
+        let (index, connections) = (start.light as usize, self.connections(sky));
+        let chosen = || connections.probability(index, reference);
         match (&start.point, &self.all[index].emitter.kind) {
             (EmitterPoint::Surface(point), _) => {
                 chosen() * geometry.pdf_area_toward(point.shape, reference, point) / start.pdf
             }
             (EmitterPoint::Volume { position, .. }, Kind::Medium(volume)) => {
-                self.connections.pdf_vol(index, &volume.emission, *position, reference) / start.pdf
+                connections.pdf_vol(index, &volume.emission, *position, reference) / start.pdf
             }
-            (EmitterPoint::Direction(towards), Kind::Infinite(sky)) => {
-                chosen() * sky.seen(*towards).aimed_sr / start.pdf
+            (EmitterPoint::Direction(towards), Kind::Infinite(infinite)) => {
+                chosen() * infinite.seen(*towards).aimed_sr / start.pdf
             }
             _ => chosen() / self.starts.probability(index) * (start.unlearnt.point / start.pdf),
         }

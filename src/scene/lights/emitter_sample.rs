@@ -8,6 +8,7 @@ use crate::{
     },
     math::{Spectrum, Vec3, measure},
     sampling::Stream,
+    settings::options::Sky,
     shape::SurfacePoint,
 };
 
@@ -38,12 +39,14 @@ impl Lights {
         &self,
         geometry: &Geometry,
         reference: Vec3,
+        sky: Sky,
         stream: &mut Stream,
     ) -> Option<EmitterSample> {
-        if self.connections.is_empty() {
+        let connections = self.connections(sky);
+        if connections.is_empty() {
             return None;
         }
-        let (index, cell) = match self.connections.sample(reference, stream) {
+        let (index, cell) = match connections.sample(reference, stream) {
             Taken::Emitter(index, chosen) => {
                 return self.sample_point_of(geometry, index, chosen, reference, stream);
             }
@@ -55,7 +58,7 @@ impl Lights {
             Some(cell) => emission.sample_in(cell, stream),
             None => emission.sample(stream),
         };
-        let pdf = self.connections.pdf_vol(index, emission, position, reference);
+        let pdf = connections.pdf_vol(index, emission, position, reference);
         self.volume_point(index, volume, position, pdf)
     }
 
@@ -166,10 +169,10 @@ impl Lights {
 
     /// A point of an emissive medium that a camera subpath from `reference` has found; none where nothing is emitted
     /// there.
-    pub fn volume_hit(&self, light: u32, position: Vec3, reference: Vec3) -> Option<EmitterSample> {
+    pub fn volume_hit(&self, light: u32, position: Vec3, reference: Vec3, sky: Sky) -> Option<EmitterSample> {
         let index = light as usize;
         let Kind::Medium(volume) = &self.all[index].emitter.kind else { return None };
-        let pdf = self.connections.pdf_vol(index, &volume.emission, position, reference);
+        let pdf = self.connections(sky).pdf_vol(index, &volume.emission, position, reference);
         self.volume_point(index, volume, position, pdf)
     }
 
@@ -200,9 +203,10 @@ impl Lights {
         light: u32,
         point: &SurfacePoint,
         reference: Vec3,
+        sky: Sky,
     ) -> Option<EmitterSample> {
         let index = light as usize;
-        let chosen = self.connections.probability(index, reference);
+        let chosen = self.connections(sky).probability(index, reference);
         let pdf = chosen * geometry.pdf_area_toward(point.shape, reference, point);
         // Next-event estimation may be unable to find this point from there (a density of 0): the walk can.
         let mut sample =
@@ -213,10 +217,10 @@ impl Lights {
 
     /// What a camera subpath from `reference` found by leaving the scene in unit `direction`; none where nothing is
     /// there.
-    pub fn infinity_hit(&self, direction: Vec3, reference: Vec3) -> Option<EmitterSample> {
+    pub fn infinity_hit(&self, direction: Vec3, reference: Vec3, sky: Sky) -> Option<EmitterSample> {
         let index = self.environment? as usize;
-        let sky = self.all[index].emitter.environment()?;
-        let chosen = self.connections.probability(index, reference);
-        self.infinite_sample(index, direction, sky.seen(direction), chosen)
+        let environment = self.all[index].emitter.environment()?;
+        let chosen = self.connections(sky).probability(index, reference);
+        self.infinite_sample(index, direction, environment.seen(direction), chosen)
     }
 }

@@ -36,6 +36,7 @@ use crate::{
     math::{Bounds, Spectrum, Vec3},
     medium::{Emission, Medium, MediumIndex},
     sampling::Discrete,
+    settings::options::Sky,
 };
 use light_sampler::{Extent, LightSampler};
 
@@ -48,6 +49,8 @@ pub struct Lights {
     starts: Discrete,
     /// Which emitter a reference point is connected to.
     connections: LightSampler,
+    /// The same without what surrounds the scene; none where there is nothing else, or nothing there.
+    lamps: Option<LightSampler>,
     /// Which of those that equiangular sampling applies to it takes.
     pivoting: Discrete,
     /// Of every emitter that it applies to.
@@ -83,9 +86,18 @@ impl Lights {
         let pivots: Vec<Option<Pivot>> = all.iter().map(|light| Pivot::of(light, geometry)).collect();
         let placed = powers.iter().zip(&pivots).map(|(power, pivot)| pivot.map_or(0.0, |_| *power));
         let environment = all.iter().position(|light| light.emitter.environment().is_some());
+        let extent = Extent { geometry, centre, radius };
         Self {
             starts: Discrete::new(powers.iter().copied()),
-            connections: LightSampler::new(&all, &powers, &Extent { geometry, centre, radius }),
+            connections: LightSampler::new(&all, &powers, &extent),
+            lamps: environment.and_then(|sky| {
+                let powers: Vec<f64> = powers
+                    .iter()
+                    .enumerate()
+                    .map(|(index, power)| if index == sky { 0.0 } else { *power })
+                    .collect();
+                Some(LightSampler::new(&all, &powers, &extent)).filter(|lamps| !lamps.is_empty())
+            }),
             pivoting: light_sampler::regardless(placed),
             of_media: of_media(&all),
             environment: environment.map(|index| index as u32),
@@ -117,6 +129,32 @@ impl Lights {
     /// True if some emitter's rays are parallel, at infinity or not.
     pub fn has_parallel(&self) -> bool {
         self.all.iter().any(|light| light.emitter.is_parallel())
+    }
+
+    /// True if next-event estimation may leave what surrounds the scene to other strategies.
+    pub fn has_lamps_besides_sky(&self) -> bool {
+        self.lamps.is_some()
+    }
+
+    /// Which emitter next-event estimation takes.
+    #[inline]
+    fn connections(&self, sky: Sky) -> &LightSampler {
+        match (&self.lamps, sky) {
+            (Some(lamps), Sky::Hit) => lamps,
+            _ => &self.connections,
+        }
+    }
+
+    /// How often next-event estimation from `reference` would take the emitter `light` under [`Sky::Hit`], over how often it does
+    /// otherwise, if it takes others in proportion.
+    pub fn without_sky(&self, light: u32, reference: Vec3) -> f32 {
+        match self.environment {
+            Some(sky) if sky == light => 0.0,
+            Some(sky) => {
+                1.0 / (1.0 - self.connections.probability(sky as usize, reference)).max(f32::EPSILON)
+            }
+            None => 1.0,
+        }
     }
 
     /// True if some medium emits light.

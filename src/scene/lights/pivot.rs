@@ -6,6 +6,7 @@ use crate::{
     emitter::Kind,
     math::{Vec3, offset},
     sampling::{Stream, stream::Purpose},
+    settings::options::Sky,
 };
 use std::f32::consts::FRAC_PI_2;
 
@@ -134,10 +135,10 @@ impl Lights {
     /// What equiangular sampling needs to know of emitter `index`: where it is, and how often it is chosen over how
     /// often next-event estimation from `reference` chooses it; none where it does not apply.
     #[inline]
-    pub fn pivot(&self, index: u32, reference: Vec3) -> Option<(&Pivot, f32)> {
+    pub fn pivot(&self, index: u32, reference: Vec3, sky: Sky) -> Option<(&Pivot, f32)> {
         let pivot = self.pivots[index as usize].as_ref()?;
         let index = index as usize;
-        Some((pivot, self.pivoting.probability(index) / self.connections.probability(index, reference)))
+        Some((pivot, self.pivoting.probability(index) / self.connections(sky).probability(index, reference)))
     }
 }
 

@@ -146,8 +146,9 @@ pub(super) fn long_cases<P: Profile>(
         light_walk(LightPath::new(estimator, &mut kept, &mut film, start, 0), estimator, &start, 0, stream);
     let mut cases = Cases { scene, hidden: estimator.hide_emitters, hero: 0, all: Vec::new() };
     let last = &camera.vertices[length - 1];
-    let sample =
-        (0..100).find_map(|_| scene.lights.sample_emitter(&scene.geometry, last.position(), stream)).unwrap();
+    let sample = (0..100)
+        .find_map(|_| scene.lights.sample_emitter(&scene.geometry, last.position(), estimator.sky, stream))
+        .unwrap();
     let of_eye = |count| chain(&camera.vertices[..count], false);
     let of_light = |count| chain(&light.vertices[..count], false);
     cases.add(
@@ -237,7 +238,8 @@ fn of_eye<P: Profile>(
         if !P::NULLS
             && let Interaction::Surface(point) = vertex.interaction
             && let Some(light) = scene.surface(point.shape).emitter
-            && let Some(sample) = scene.lights.surface_hit(&scene.geometry, light, &point, previous)
+            && let Some(sample) =
+                scene.lights.surface_hit(&scene.geometry, light, &point, previous, estimator.sky)
         {
             let before = chain(&camera.vertices[..index], vertex.subpath.after_dirac);
             cases.add_hit(
@@ -248,7 +250,8 @@ fn of_eye<P: Profile>(
         }
         if can_join(estimator, vertex)
             && estimator.counts.next_event > 0.0
-            && let Some(sample) = scene.lights.sample_emitter(&scene.geometry, vertex.position(), stream)
+            && let Some(sample) =
+                scene.lights.sample_emitter(&scene.geometry, vertex.position(), estimator.sky, stream)
         {
             let contribution = camera.visitor.join_emitter(vertex, &sample, stream);
             cases.add(
@@ -262,7 +265,7 @@ fn of_eye<P: Profile>(
     }
     of_flights(estimator, camera, cases, stream);
     if let Some(subpath) = &camera.escaped
-        && let Some(sample) = scene.lights.infinity_hit(-subpath.incoming, previous)
+        && let Some(sample) = scene.lights.infinity_hit(-subpath.incoming, previous, estimator.sky)
     {
         let before = chain(&camera.vertices, subpath.after_dirac);
         cases.add_hit(emitter_of(&sample), before, camera.visitor.emitter_hit(subpath, &sample, previous));
@@ -286,7 +289,7 @@ fn of_flights<P: Profile>(
             }),
             Passed::Emitter(crossing) => {
                 let (light, from) = (crossing.light, departure.position);
-                let sample = lights.surface_hit(geometry, light, &crossing.point, from);
+                let sample = lights.surface_hit(geometry, light, &crossing.point, from, estimator.sky);
                 cross::<P>(departure, crossing, cases.hero).zip(sample)
             }
         };

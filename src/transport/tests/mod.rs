@@ -171,6 +171,23 @@ fn learnt_starts() {
     all("starts seen", examine::<Bounded>("learnt, starts seen", &open, light, 1000));
 }
 
+/// Next-event estimation leaves the environment alone.
+#[test]
+fn a_sky_that_is_hit_only() {
+    let options = Options { effort: Effort { sky: super::Sky::Hit, ..ALL.effort }, ..ALL };
+    let all = |name: &'static str, report: Report| {
+        assert!(report.paths >= 1000, "{name}: {} paths", report.paths);
+    };
+    let open = build(&[OUTSIDE, SMOKE, GROUND, SKY, SUN, POINT, SPOT, LAMP, BULB]);
+    all("open", examine::<Bounded>("hit, in the open", &open, options, 1000));
+    let image = build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SKY_IMAGE, SUN]);
+    all("image", examine::<Everything>("hit, sky image", &image, options, 1000));
+    let fire = build(&[OUTSIDE, FIRE_BOX, GROUND, SKY]);
+    all("fire", examine::<Fire>("hit, fire in a box", &fire, options, 600));
+    let learnt = Options { effort: Effort { learnt_starts: true, ..options.effort }, ..options };
+    all("learnt", examine::<Bounded>("hit, learnt", &open, learnt, 1000));
+}
+
 #[test]
 fn dirac_vertices_in_fog() {
     examine_all::<Fog>("glass, mirror", &build(&[FOG, INSIDE, ROOM, LAMP, GLASS_BALL, MIRROR]), 400);

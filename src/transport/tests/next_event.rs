@@ -8,6 +8,7 @@ use crate::{
         Scene,
         lights::{EmitterPoint, EmitterSample},
     },
+    settings::options::Sky,
     testing::{chi_square, significance},
 };
 
@@ -23,10 +24,14 @@ fn references(stream: &mut Stream) -> Vec<Vec3> {
 fn density_of_hit(scene: &Scene, sample: &EmitterSample, reference: Vec3) -> Option<EmitterSample> {
     let Scene { lights, geometry, .. } = scene;
     match sample.point {
-        EmitterPoint::Surface(point) => lights.surface_hit(geometry, sample.light, &point, reference),
-        EmitterPoint::Volume { position, .. } => lights.volume_hit(sample.light, position, reference),
+        EmitterPoint::Surface(point) => {
+            lights.surface_hit(geometry, sample.light, &point, reference, Sky::NextEvent)
+        }
+        EmitterPoint::Volume { position, .. } => {
+            lights.volume_hit(sample.light, position, reference, Sky::NextEvent)
+        }
         EmitterPoint::Direction(towards) => {
-            let hit = lights.infinity_hit(towards, reference);
+            let hit = lights.infinity_hit(towards, reference, Sky::NextEvent);
             hit.filter(|hit| hit.light == sample.light)
         }
         EmitterPoint::Point(_) | EmitterPoint::Beam { .. } => None,
@@ -44,7 +49,7 @@ fn check(name: &str, parts: &[&str]) {
     let (mut hits, mut starts) = (0, 0);
     for reference in references(&mut stream) {
         for _ in 0..100 {
-            if let Some(sample) = lights.sample_emitter(geometry, reference, &mut stream)
+            if let Some(sample) = lights.sample_emitter(geometry, reference, Sky::NextEvent, &mut stream)
                 && let Some(hit) = density_of_hit(&setup.scene, &sample, reference)
             {
                 let same = is_close(hit.pdf, sample.pdf) && is_close(hit.pdf_start, sample.pdf_start);
@@ -52,7 +57,7 @@ fn check(name: &str, parts: &[&str]) {
                 hits += 1;
             }
             let Some(start) = lights.sample_emission(geometry, None, &mut stream) else { continue };
-            let by_ratio = start.pdf * lights.connect_over_start(geometry, &start, reference);
+            let by_ratio = start.pdf * lights.connect_over_start(geometry, &start, reference, Sky::NextEvent);
             let seen = EmitterSample { light: start.light, point: start.point, ..DARK };
             if let Some(hit) = density_of_hit(&setup.scene, &seen, reference) {
                 assert!(
@@ -106,7 +111,7 @@ fn emitters_come_as_often_as_they_should() {
     for reference in &references(&mut stream) {
         let (mut observed, mut expected) = ([0; 41], [0.0; 41]);
         for _ in 0..DRAWS {
-            let sample = lights.sample_emitter(geometry, *reference, &mut stream).unwrap();
+            let sample = lights.sample_emitter(geometry, *reference, Sky::NextEvent, &mut stream).unwrap();
             observed[sample.light as usize] += 1;
             expected[sample.light as usize] = f64::from(sample.pdf) * DRAWS as f64;
         }

@@ -18,7 +18,7 @@ use crate::{
     },
     shape::SurfacePoint,
     transport::{
-        Counts, Estimator, Heuristic, Interaction,
+        Counts, Estimator, Heuristic, Interaction, Sky,
         profile::Profile,
         roulette::{Pending, Roulette},
     },
@@ -41,6 +41,7 @@ pub(super) struct Reference<'a> {
     /// A sampled start on every emitter: those of one emitter have equal densities, but for environments
     /// and media.
     pub starts: Vec<Option<EmissionSample>>,
+    pub sky: Sky,
     pub learnt: Option<Arc<Starts>>,
     pub guide: Option<Arc<Guide>>,
 }
@@ -54,7 +55,7 @@ struct Written {
 impl<'a> Reference<'a> {
     /// Gathers what is needed of the emitters.
     pub(super) fn new<P: Profile>(estimator: &Estimator<'a, P>) -> Self {
-        let Estimator { scene, counts, heuristic, roulette, .. } = *estimator;
+        let Estimator { scene, counts, heuristic, roulette, sky, .. } = *estimator;
         let mut starts = vec![None; scene.lights.all.len()];
         let mut stream = Stream::new(7, 0, 0, Purpose::Study);
         // The faintest of the lamps of the scenes comes once in some 10 000.
@@ -67,7 +68,7 @@ impl<'a> Reference<'a> {
             }
         }
         let (learnt, guide) = (estimator.starts.clone(), estimator.guide.clone());
-        Self { scene, counts, heuristic, roulette, channels: P::Channels::COUNT, starts, learnt, guide }
+        Self { scene, counts, heuristic, roulette, channels: P::Channels::COUNT, starts, sky, learnt, guide }
     }
 
     /// Weights by strategy and hero, each in [0, 1]: they sum to one.
@@ -110,7 +111,7 @@ impl<'a> Reference<'a> {
     pub(super) fn equiangular(&self, path: &Path) -> Option<f64> {
         let [y, x, o] = path.nodes.as_slice() else { return None };
         let Place::Volume(position) = x.place else { return None };
-        let (pivot, over_connect) = self.scene.lights.pivot(path.light, position)?;
+        let (pivot, over_connect) = self.scene.lights.pivot(path.light, position, self.sky)?;
         let (position, lens) = (position.as_dvec3(), o.position().as_dvec3());
         let along = match pivot {
             Pivot::Around(place) => along_place(place, lens, position),
@@ -176,14 +177,14 @@ impl<'a> Reference<'a> {
             return self
                 .scene
                 .lights
-                .infinity_hit(direction, reference)
+                .infinity_hit(direction, reference, self.sky)
                 .map_or(0.0, |sample| f64::from(sample.pdf_start));
         }
         if let Place::VolumeEmitter(position, light) = path.nodes[0].place {
             return self
                 .scene
                 .lights
-                .volume_hit(light, position, reference)
+                .volume_hit(light, position, reference, self.sky)
                 .map_or(0.0, |sample| f64::from(sample.pdf_start));
         }
         self.starts[path.light as usize].as_ref().map_or(0.0, |start| f64::from(start.pdf))
@@ -282,13 +283,13 @@ impl<'a> Reference<'a> {
         let reference = path.nodes[1].position();
         match (&self.emitter(path).kind, path.nodes[0].place) {
             (Kind::Surface(_), Place::Surface(point)) => {
-                lights.surface_hit(geometry, path.light, &point, reference)
+                lights.surface_hit(geometry, path.light, &point, reference, self.sky)
             }
             (Kind::Infinite(_), Place::Sky(direction)) if self.emitter(path).environment().is_some() => {
-                lights.infinity_hit(direction, reference)
+                lights.infinity_hit(direction, reference, self.sky)
             }
             (Kind::Medium(_), Place::VolumeEmitter(position, light)) => {
-                lights.volume_hit(light, position, reference)
+                lights.volume_hit(light, position, reference, self.sky)
             }
             (_, place) => {
                 // Single points and directions come up as often as their emitter is chosen.
@@ -299,7 +300,9 @@ impl<'a> Reference<'a> {
                     (EmitterPoint::Beam { .. }, Place::Disk(..)) => sample.light == path.light,
                     _ => false,
                 };
-                (0..4_096).filter_map(|_| lights.sample_emitter(geometry, reference, &mut stream)).find(found)
+                (0..4_096)
+                    .filter_map(|_| lights.sample_emitter(geometry, reference, self.sky, &mut stream))
+                    .find(found)
             }
         }
     }

@@ -103,7 +103,7 @@ fn first<S: MisSums>(path: &Path, vertex: &Vertex<S>, reference: &Reference<'_>)
 /// The fast weight of equiangular sampling.
 fn along<P: Profile>(reference: &Reference<'_>, path: &Path, camera: &CameraPath<'_, P, Sum>) -> Option<f64> {
     let [_, seen, lens] = path.nodes.as_slice() else { return None };
-    let (pivot, over_connect) = reference.scene.lights.pivot(path.light, seen.position())?;
+    let (pivot, over_connect) = reference.scene.lights.pivot(path.light, seen.position(), reference.sky)?;
     let (position, direction) = (seen.position(), lens.towards(seen).as_vec3());
     let film = reference.scene.sensor.project(position, APERTURE)?.film;
     let mut departure = camera_path::depart(camera.estimator, film, APERTURE);
