@@ -212,6 +212,8 @@ CASES = (
     *functions(),
     Case("phase_functions.json", effort=2),
     Case("phase_functions_tabulated.json", effort=2),
+    Case("phase_microflakes.xml", effort=4, parameters={"depth": "2"}, trackers=("null_collision", "residual_ratio")),
+    Case("phase_microflakes.xml", ("lt", "bdpt"), parameters={"depth": "6"}, own="pt"),
     Case("spectra.json"),
     Case("spectra_blackbody.json", variant="scalar_spectral"),
     Case("integrator_path.json"),

@@ -103,7 +103,7 @@ const PLUGINS: &[Plugins] = &[
         "use \"sobol\"",
     ),
     ("sampler", &["random"], "use \"independent\""),
-    ("phase", &["sggx", "microflake", "kkay"], "use \"hg\""),
+    ("phase", &["microflake", "kkay"], "use \"sggx\""),
     ("phase", &["henyey_greenstein", "henyeygreenstein"], "use \"hg\""),
     ("phase", &["mixturephase"], "use \"blendphase\""),
     ("volume", &["grid", "vdb", "openvdb", "nanovdb", "volcache", "hgridvolume"], "use \"gridvolume\""),

@@ -5,7 +5,10 @@ use crate::{
     guide::{Guide, Lesson},
     math::{Vec2, Vec3},
     scene::Scene,
-    transport::{Event, Interaction, Scattering, Strategies, observer::Meeting, strategy::StrategyKind},
+    transport::{
+        Event, Interaction, Scattering, Strategies, observer::Meeting, profiles::Everything,
+        strategy::StrategyKind,
+    },
 };
 
 /// The camera's, which go towards the light, and the light's.
@@ -51,7 +54,8 @@ fn onward(
     outgoing: Vec3,
     transport: Transport,
 ) -> Onward {
-    let Scattering { pdf_fwd, pdf_rev, .. } = interaction.scatter(scene, incoming, outgoing, transport);
+    let Scattering { pdf_fwd, pdf_rev, .. } =
+        interaction.scatter::<Everything>(scene, incoming, outgoing, transport);
     match transport {
         Transport::Radiance => [pdf_fwd, pdf_rev],
         Transport::Importance => [pdf_rev, pdf_fwd],

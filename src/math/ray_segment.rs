@@ -32,6 +32,12 @@ impl RaySegment {
         }
     }
 
+    /// The same piece, `by` times as long in units of t that are so many times as short.
+    #[inline]
+    pub fn stretched(&self, by: f32) -> Self {
+        Self { origin: self.origin, direction: self.direction / by, length: self.length * by }
+    }
+
     /// The range of t within the box from `low` to `high`; none where that is empty.
     #[inline]
     pub fn within(&self, low: Vec3, high: Vec3) -> Option<[f32; 2]> {

@@ -3,6 +3,7 @@
 
 use super::{
     DistanceMethod, Heterogeneous, Medium, MediumOverrides, MediumProperties,
+    distance::DistanceSampler,
     emission::{EMISSION, EmissionDescription},
     heterogeneous::Fields,
 };
@@ -94,14 +95,28 @@ impl MediumDescription {
 
     /// The medium, which lies `around` where its volumes do not say so themselves.
     pub fn finish(self, around: MediumBounds, overrides: &MediumOverrides) -> Result<Medium> {
+        let has_flakes = matches!(self.medium.phase, Phase::Sggx(_));
         let medium = match self.fields {
             None => overridden(self.medium, overrides),
             Some(fields) => {
-                self.medium.with(Heterogeneous::new(fields, [around.low, around.high], *overrides)?)
+                let location = fields.location.clone();
+                let varying = Heterogeneous::new(fields, [around.low, around.high], *overrides)?;
+                if has_flakes && matches!(varying.tracker(), DistanceSampler::RayMarching(_)) {
+                    let expected = "a tracker without steps in a medium of flakes (\"sggx\")";
+                    let remedy = "leave it out, or choose \"null_collision\"";
+                    return Err(Error::new(&location, expected, "the tracker \"march\"", remedy));
+                }
+                self.medium.with(varying)
             }
         };
         match self.emission {
             None => Ok(medium),
+            Some(given) if has_flakes => {
+                let remedy = "overlap it with a medium that emits";
+                let expected =
+                    "no emission in a medium of flakes (\"sggx\"), whose absorption depends on the direction";
+                Err(Error::new(&given.location, expected, "one", remedy))
+            }
             Some(given) => medium.with_emission(given, around),
         }
     }

@@ -75,6 +75,8 @@ pub trait MediaProfile: Copy + Send + Sync + 'static {
     type Channels: Channels;
     /// Some medium's coefficients vary in space.
     const HETEROGENEOUS: bool;
+    /// Some medium's extinction depends on the direction of flight: what flakes show of themselves.
+    const FLAKES: bool;
 }
 
 /// The properties of a medium at a point.
@@ -124,6 +126,12 @@ impl MediumInterval {
     #[inline]
     fn length(&self) -> f32 {
         self.segment.length + self.skipped
+    }
+
+    /// The same, `by` times as long in units that are so many times as short.
+    #[inline]
+    fn stretched(&self, by: f32) -> Self {
+        Self { segment: self.segment.stretched(by), skipped: self.skipped * by }
     }
 }
 
@@ -203,6 +211,46 @@ impl Medium {
         }
     }
 
+    #[inline(always)]
+    fn has_flakes<M: MediaProfile>(&self) -> bool {
+        M::FLAKES && matches!(self.phase, Phase::Sggx(_))
+    }
+
+    /// The factor of extinction for light that flies in unit `direction`, or back: the area that flakes show; else 1.
+    #[inline(always)]
+    pub fn area<M: MediaProfile>(&self, direction: Vec3) -> f32 {
+        match &self.phase {
+            Phase::Sggx(flakes) if M::FLAKES => flakes.area(direction),
+            _ => 1.0,
+        }
+    }
+
+    /// Seen so, extinction along `interval` is as of flakes that show a unit area.
+    #[inline(always)]
+    fn stretched<M: MediaProfile>(&self, interval: &MediumInterval) -> MediumInterval {
+        match &self.phase {
+            Phase::Sggx(flakes) if M::FLAKES => interval.stretched(flakes.area(interval.segment.direction)),
+            _ => *interval,
+        }
+    }
+
+    /// What was sampled in the `stretched` interval, back in metres of `interval`.
+    #[inline(always)]
+    fn shrunk<M: MediaProfile>(
+        &self,
+        interval: &MediumInterval,
+        sample: DistanceSample<M::Channels>,
+    ) -> DistanceSample<M::Channels> {
+        match &self.phase {
+            Phase::Sggx(flakes) if M::FLAKES => {
+                let RaySegment { direction, length, .. } = interval.segment;
+                let collision = sample.collision.map(|t| (t / flakes.area(direction)).min(length));
+                DistanceSample { collision, ..sample }
+            }
+            _ => sample,
+        }
+    }
+
     /// Only what was compiled for media that vary asks whether this one does.
     #[inline(always)]
     fn model<M: MediaProfile>(&self) -> Model<'_> {
@@ -263,6 +311,7 @@ impl Medium {
     /// LW96 eq. 7: P_surface = e^-depth.
     #[inline(always)]
     pub fn optical_depth<M: MediaProfile>(&self, interval: &MediumInterval) -> M::Channels {
+        let interval = &self.stretched::<M>(interval);
         match self.model::<M>() {
             Model::Homogeneous(bound) => bound.optical_depth(interval.length()),
             Model::Heterogeneous(varying) => varying.depth(&interval.segment),
@@ -277,6 +326,7 @@ impl Medium {
         interval: &MediumInterval,
         stream: &mut Stream,
     ) -> Option<Attenuation<M::Channels>> {
+        let interval = &self.stretched::<M>(interval);
         match self.model::<M>() {
             Model::Homogeneous(bound) => {
                 let depth: M::Channels = bound.optical_depth(interval.length());
@@ -296,6 +346,7 @@ impl Medium {
         hero: usize,
         stream: &mut Stream,
     ) -> M::Channels {
+        let interval = &self.stretched::<M>(interval);
         match self.model::<M>() {
             Model::Homogeneous(_) => depth.flight_ratio(M::Channels::splat(1.0), hero),
             Model::Heterogeneous(varying) => varying.ratio(&interval.segment, depth, hero, stream),
@@ -308,6 +359,7 @@ impl Medium {
     #[inline(always)]
     pub fn reach<M: MediaProfile>(&self, skipped: f32, hero: usize, remaining: f32) -> f32 {
         match self.model::<M>() {
+            Model::Homogeneous(_) if self.has_flakes::<M>() => f32::INFINITY,
             Model::Homogeneous(bound) => bound.collision::<M::Channels>(skipped, hero, remaining),
             Model::Heterogeneous(_) | Model::Mixture(_) => f32::INFINITY,
         }
@@ -332,13 +384,15 @@ impl Medium {
         remaining: f32,
         stream: &mut Stream,
     ) -> DistanceSample<M::Channels> {
-        match self.model::<M>() {
-            Model::Homogeneous(bound) => bound.sample_distance(interval, hero, remaining),
+        let stretched = &self.stretched::<M>(interval);
+        let sample = match self.model::<M>() {
+            Model::Homogeneous(bound) => bound.sample_distance(stretched, hero, remaining),
             Model::Heterogeneous(varying) => {
-                varying.sample_distance(&interval.segment, hero, remaining, stream)
+                varying.sample_distance(&stretched.segment, hero, remaining, stream)
             }
-            Model::Mixture(mixture) => mixture.sample_distance::<M>(interval, hero, stream),
-        }
+            Model::Mixture(mixture) => mixture.sample_distance::<M>(stretched, hero, stream),
+        };
+        self.shrunk::<M>(interval, sample)
     }
 
     /// What crosses an interval whose optical depth is `depth` while collisions in it are forced.
@@ -349,6 +403,7 @@ impl Medium {
         hero: usize,
         stream: &mut Stream,
     ) -> Unforced<M::Channels> {
+        let interval = &self.stretched::<M>(interval);
         match self.model::<M>() {
             Model::Homogeneous(_) => Unforced {
                 transmittance: depth.exp_neg(),
@@ -363,6 +418,7 @@ impl Medium {
     /// The depth of [`Self::unforced`].
     fn forced_depth<M: MediaProfile>(&self, interval: &MediumInterval, hero: usize) -> f32 {
         let depth = self.optical_depth::<M>(interval);
+        let interval = &self.stretched::<M>(interval);
         match self.model::<M>() {
             Model::Homogeneous(_) => depth.hero(hero),
             Model::Heterogeneous(varying) => varying.forced_depth(&interval.segment, depth, hero),
@@ -379,17 +435,23 @@ impl Medium {
         remaining: f32,
         stream: &mut Stream,
     ) -> Option<DistanceSample<M::Channels>> {
-        match self.model::<M>() {
-            Model::Homogeneous(bound) => Some(bound.force_collision(interval, hero, remaining)),
+        let stretched = &self.stretched::<M>(interval);
+        let sample = match self.model::<M>() {
+            Model::Homogeneous(bound) => bound.force_collision(stretched, hero, remaining),
             Model::Heterogeneous(varying) => {
-                varying.force_collision(&interval.segment, hero, remaining, stream)
+                varying.force_collision(&stretched.segment, hero, remaining, stream)?
             }
-            Model::Mixture(mixture) => mixture.force_collision::<M>(interval, hero, remaining, stream),
-        }
+            Model::Mixture(mixture) => mixture.force_collision::<M>(stretched, hero, remaining, stream)?,
+        };
+        Some(self.shrunk::<M>(interval, sample))
     }
 
     /// Optical depth for a picture that need not be exact but must not be noisy.
     pub fn quick_depth(&self, segment: &RaySegment) -> Spectrum {
+        let segment = &match &self.phase {
+            Phase::Sggx(flakes) => segment.stretched(flakes.area(segment.direction)),
+            _ => *segment,
+        };
         match self.any_model() {
             Model::Homogeneous(bound) => bound.optical_depth(segment.length),
             Model::Heterogeneous(varying) => varying.quick_depth(segment),

@@ -69,7 +69,13 @@ impl Blend {
         match params.children("phase", |child| child.name != "weight")?.as_slice() {
             [first, second] => {
                 let part = |object| build(object, params.library, place);
-                let (first, second) = (part(first.object)?, part(second.object)?);
+                let parts = [(first.location, part(first.object)?), (second.location, part(second.object)?)];
+                if let Some((place, _)) = parts.iter().find(|(_, part)| matches!(part, Phase::Sggx(_))) {
+                    let remedy = "overlap two media, one with the sggx";
+                    let expected = "phase functions that leave the extinction as it is";
+                    return Err(Error::new(place, expected, "an sggx", remedy));
+                }
+                let [(_, first), (_, second)] = parts;
                 Ok(match weight {
                     Volume::Constant(weight) => Self::new(weight.eval(Vec3::ZERO), first, second),
                     weight => Self::varying(Arc::new(weight), first, second),

@@ -20,6 +20,19 @@ impl Deflection {
         Self { before, after }
     }
 
+    /// The direction of flight before.
+    #[inline]
+    pub fn before(&self) -> Vec3 {
+        self.before
+    }
+
+    /// The normal, of any length, of a mirror that turns so; straight on, of one that is grazed.
+    #[inline]
+    pub fn normal(&self) -> Vec3 {
+        let normal = self.after - self.before;
+        if normal == Vec3::ZERO { self.before.any_orthogonal_vector() } else { normal }
+    }
+
     /// Its cosine, in [-1, 1]: 1 straight on, -1 straight back.
     #[inline]
     pub fn cosine(&self) -> f32 {

@@ -1,8 +1,9 @@
 //! Phase functions: one file a model; this page is the contract and the registry.
 //!
-//! At a point all depend on the angle between the directions of flight before and after scattering alone (cos > 0 is
-//! forward), are normalised to 1 over the sphere, and are sampled exactly: the density of a sampled direction
-//! is the value of the function, both ways. Only a blend may differ from one point to another.
+//! At a point all but flakes depend on the angle between the directions of flight before and after scattering alone (cos >
+//! 0 is forward), are normalised to 1 over the sphere, and are sampled exactly: the density of a sampled direction
+//! is the value of the function, both ways; of flakes, that times the area that they show is the same both ways. Only a
+//! blend may differ from one point to another.
 
 mod blend;
 mod cornette_shanks;
@@ -17,6 +18,7 @@ mod mie_reflecting;
 mod rayleigh;
 mod sakas;
 mod schlick;
+mod sggx;
 mod specular_sphere;
 mod table;
 #[cfg(test)]
@@ -35,6 +37,7 @@ pub use mie_reflecting::MieReflecting;
 pub use rayleigh::Rayleigh;
 pub use sakas::Sakas;
 pub use schlick::Schlick;
+pub use sggx::Sggx;
 pub use specular_sphere::SpecularSphere;
 pub use table::Table;
 
@@ -106,6 +109,7 @@ phases! {
     Gaussian: "gaussian" => build TABLE;
     DiffuseSphere: "diffuse_sphere" => build TABLE;
     SpecularSphere: "specular_sphere" => build TABLE;
+    Sggx: "sggx" => build TABLE placed;
     Table: "tabphase" => build TABLE;
     Blend: "blendphase" => build TABLE placed, "two_term_hg" => two_term_hg HG_TABLE,
         "two_term_schlick" => two_term_schlick SCHLICK_TABLE;

@@ -44,7 +44,7 @@ pub(super) fn vertex_end<P: Profile>(
         within: false,
         value,
         pdf_fwd: scattering.pdf_fwd,
-        cosine: vertex.cosine(towards),
+        cosine: vertex.cosine::<P>(scene, towards),
         inv_pdf: vertex.subpath.inv_pdf,
         sigma_t: vertex.sigma_t(),
         pdf_over_hero: vertex.subpath.pdf_over_hero,

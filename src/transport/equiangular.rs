@@ -176,12 +176,13 @@ impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
         pdf: f32,
     ) -> Option<Vertex<P::MisSums>> {
         let (estimator, direction) = (self.estimator, departure.ray.direction);
-        let properties = estimator.scene.media[between.medium.0 as usize].properties_at::<P>(0, position);
+        let medium = &estimator.scene.media[between.medium.0 as usize];
+        let properties = medium.properties_at::<P>(0, position);
         let inv_pdf = distance * distance / (departure.pdf_fwd * pdf);
         if properties.sigma_t.max_element() <= 0.0 || !(inv_pdf > 0.0 && inv_pdf < f32::INFINITY) {
             return None;
         }
-        let one = P::Channels::splat(1.0);
+        let (one, area) = (P::Channels::splat(1.0), medium.area::<P>(direction));
         let forced = estimator.forced_interaction;
         let gain = if forced { forced::gain(estimator, departure.ray) } else { one };
         let subpath = Subpath {
@@ -189,11 +190,11 @@ impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
             medium: between.medium,
             edges: 1,
             after_dirac: false,
-            throughput: departure.throughput * between.transmittance * properties.sigma_t / pdf,
+            throughput: departure.throughput * between.transmittance * properties.sigma_t * area / pdf,
             inv_pdf,
             pdf_over_hero_before: one,
             pdf_over_hero: (between.pdf * P::Channels::from_spectrum(properties.sigma_t) * gain)
-                .scaled(1.0 / pdf),
+                .scaled(area / pdf),
             others_over_pdf_rev: P::MisSums::none(),
         };
         let (survival, pending) = estimator.roulette.at(properties.survival(), departure.pending);

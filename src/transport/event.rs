@@ -1,6 +1,6 @@
 //! What observers see of walks: where they go, where they arrive, and what is there.
 
-use super::interaction::Interaction;
+use super::{interaction::Interaction, profiles::Everything};
 use crate::{
     bsdf::Transport,
     guide::Seen,
@@ -78,8 +78,11 @@ impl Event<'_> {
         let Interaction::Surface(point) = self.interaction else { return true };
         let (incoming, normal) = (self.arrival.incoming, point.shading.normal);
         let most = GLOSSY * FRAC_1_PI;
-        let pdf =
-            |outgoing: Vec3| self.interaction.scatter(scene, incoming, outgoing, Transport::Radiance).pdf_fwd;
+        let pdf = |outgoing: Vec3| {
+            let scattering =
+                self.interaction.scatter::<Everything>(scene, incoming, outgoing, Transport::Radiance);
+            scattering.pdf_fwd
+        };
         let mirrored = 2.0 * normal.dot(incoming) * normal - incoming;
         self.is_connectible(scene) && pdf(mirrored) < most && pdf(-incoming) < most
     }

@@ -3,7 +3,7 @@
 use crate::{
     bsdf::{BsdfModel, Transport},
     math::{Channels, Spectrum, Vec3},
-    medium::MediumProperties,
+    medium::{MediaProfile, Medium, MediumProperties},
     phase::Deflection,
     scene::Scene,
     shape::SurfacePoint,
@@ -41,7 +41,7 @@ impl Interaction {
         }
     }
 
-    /// sigma_t per channel in a medium, 1 on a surface.
+    /// sigma_t per channel in a medium, without [`Self::cosine`], 1 on a surface.
     #[inline]
     pub fn sigma_t<L: Channels>(&self) -> L {
         match self {
@@ -67,12 +67,19 @@ impl Interaction {
     ///
     /// LW96 eq. 10: g, without the cosine that the density of the vertex contains.
     #[inline]
-    pub fn scatter(&self, scene: &Scene, incoming: Vec3, outgoing: Vec3, transport: Transport) -> Scattering {
+    pub fn scatter<M: MediaProfile>(
+        &self,
+        scene: &Scene,
+        incoming: Vec3,
+        outgoing: Vec3,
+        transport: Transport,
+    ) -> Scattering {
         match self {
             Self::Medium(position, properties) => {
                 let medium = &scene.media[properties.medium.0 as usize];
                 let phase = medium.phase.pdf_sr_at(*position, Deflection::between(-incoming, outgoing));
-                Scattering { value: properties.albedo * phase, pdf_fwd: phase, pdf_rev: phase }
+                let pdf_rev = phase * back::<M>(medium, incoming, outgoing);
+                Scattering { value: properties.albedo * phase, pdf_fwd: phase, pdf_rev }
             }
             Self::Surface(point) => {
                 let (wi, wo) = (point.shading.to_local(incoming), point.shading.to_local(outgoing));
@@ -101,14 +108,24 @@ impl Interaction {
         }
     }
 
-    /// |cos| to the geometric normal on a surface, 1 in a medium.
+    /// |cos| to the geometric normal on a surface; in a medium [`Medium::area`], which is 1 without flakes.
     #[inline]
-    pub fn cosine(&self, direction: Vec3) -> f32 {
+    pub fn cosine<M: MediaProfile>(&self, scene: &Scene, direction: Vec3) -> f32 {
         match self {
             Self::Surface(point) => point.normal.dot(direction).abs(),
+            Self::Medium(_, properties) if M::FLAKES => {
+                scene.media[properties.medium.0 as usize].area::<M>(direction)
+            }
             Self::Medium(..) => 1.0,
         }
     }
+}
+
+/// The density of scattering back over that of scattering from unit `incoming` to unit `outgoing`: what flakes show of
+/// themselves to one over what they show to the other, else 1.
+#[inline]
+pub(super) fn back<M: MediaProfile>(medium: &Medium, incoming: Vec3, outgoing: Vec3) -> f32 {
+    if M::FLAKES { medium.area::<M>(incoming) / medium.area::<M>(outgoing) } else { 1.0 }
 }
 
 /// The correction of a light subpath's scattering where the shading normal is not the geometric one (Veach

@@ -40,7 +40,7 @@ pub struct End<S: MisSums> {
     pub value: Spectrum,
     /// Density of the direction to the other end (1/sr).
     pub pdf_fwd: f32,
-    /// |cos| on a surface, 1 elsewhere.
+    /// See [`super::interaction::Interaction::cosine`]; 1 at an emitter elsewhere than on a surface.
     pub cosine: f32,
     /// 1/p>^h of this vertex.
     pub inv_pdf: f32,

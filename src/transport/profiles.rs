@@ -10,6 +10,7 @@ use crate::{
     bsdf::BsdfModel,
     math::{Channels, Spectrum},
     medium::{MediaProfile, Medium},
+    phase::Phase,
     scene::Scene,
 };
 use std::marker::PhantomData;
@@ -23,6 +24,7 @@ macro_rules! profile {
         impl MediaProfile for $name {
             type Channels = $channels;
             const HETEROGENEOUS: bool = $heterogeneous;
+            const FLAKES: bool = false;
         }
         impl Profile for $name {
             type MisSums = Balance<$channels>;
@@ -73,6 +75,7 @@ pub struct Everything<S = Balance<Spectrum>>(PhantomData<S>);
 impl<S: MisSums<Channels = Spectrum>> MediaProfile for Everything<S> {
     type Channels = Spectrum;
     const HETEROGENEOUS: bool = true;
+    const FLAKES: bool = true;
 }
 
 impl<S: MisSums<Channels = Spectrum>> Profile for Everything<S> {
@@ -91,6 +94,7 @@ pub struct Guided<P>(PhantomData<P>);
 impl<P: Profile> MediaProfile for Guided<P> {
     type Channels = P::Channels;
     const HETEROGENEOUS: bool = P::HETEROGENEOUS;
+    const FLAKES: bool = P::FLAKES;
 }
 
 impl<P: Profile> Profile for Guided<P> {
@@ -126,6 +130,8 @@ pub struct Needs {
     pub infinite: bool,
     /// Some medium emits light.
     pub emissive: bool,
+    /// Some medium's extinction depends on the direction of flight.
+    pub flakes: bool,
 }
 
 impl Needs {
@@ -141,6 +147,7 @@ impl Needs {
             nulls: nulls || passed || overlap || scene.media_map.nowhere.is_some(),
             infinite: scene.lights.has_parallel() || scene.sensor.is_parallel(),
             emissive: scene.lights.has_media(),
+            flakes: scene.media.iter().any(|medium| matches!(medium.phase, Phase::Sggx(_))),
         }
     }
 }
@@ -168,6 +175,7 @@ impl ProfileName {
     /// The leanest profile that has all a scene needs.
     pub fn leanest(needs: Needs) -> Self {
         match needs {
+            Needs { flakes: true, .. } => Self::Everything,
             Needs { emissive: true, chromatic: false, .. } => Self::Fire,
             Needs { emissive: true, .. } => Self::Everything,
             Needs { heterogeneous: true, chromatic: false, .. } => Self::Smoke,
@@ -210,6 +218,7 @@ impl ProfileName {
                 (P::NULLS, "index-matched boundaries"),
                 (P::INFINITE, "infinite emitters"),
                 (P::EMISSIVE, "emissive media"),
+                (P::FLAKES, "microflakes"),
             ];
             parts.iter().filter(|(present, _)| !present).map(|(_, what)| *what).collect()
         }
@@ -231,7 +240,7 @@ mod tests {
 
     #[test]
     fn the_leanest_profile_has_all_that_is_needed() {
-        for bits in 0..64u32 {
+        for bits in 0..128u32 {
             let has = |bit: u32| bits >> bit & 1 == 1;
             let needs = Needs {
                 media: has(0),
@@ -240,6 +249,7 @@ mod tests {
                 nulls: has(2),
                 infinite: has(3),
                 emissive: has(5),
+                flakes: has(6),
             };
             let left_out = ProfileName::leanest(needs).left_out();
             for (needed, what) in [
@@ -249,6 +259,7 @@ mod tests {
                 (needs.nulls, "index-matched boundaries"),
                 (needs.infinite, "infinite emitters"),
                 (needs.emissive, "emissive media"),
+                (needs.flakes, "microflakes"),
             ] {
                 assert!(!(needed && left_out.contains(&what)), "{needs:?} lacks {what}");
             }

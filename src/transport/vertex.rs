@@ -12,7 +12,7 @@ use crate::{
     bsdf::Transport,
     guide::{Guidance, Guide},
     math::{Channels, Spectrum, Vec3, offset::Lift},
-    medium::MediumIndex,
+    medium::{MediaProfile, MediumIndex},
     sampling::Stream,
     scene::Scene,
 };
@@ -102,16 +102,16 @@ impl<S: MisSums> Vertex<S> {
         self.interaction.position()
     }
 
-    /// sigma_t per channel in a medium, 1 on a surface.
+    /// See [`Interaction::sigma_t`].
     #[inline]
     pub fn sigma_t(&self) -> S::Channels {
         self.interaction.sigma_t()
     }
 
-    /// |cos| to the geometric normal on a surface, 1 in a medium.
+    /// See [`Interaction::cosine`].
     #[inline]
-    pub fn cosine(&self, direction: Vec3) -> f32 {
-        self.interaction.cosine(direction)
+    pub fn cosine<M: MediaProfile>(&self, scene: &Scene, direction: Vec3) -> f32 {
+        self.interaction.cosine::<M>(scene, direction)
     }
 
     /// Where a ray towards unit `direction` starts, and in which medium.
@@ -172,7 +172,7 @@ impl<S: MisSums> Vertex<S> {
         transport: Transport,
     ) -> Scattering {
         let Scattering { value, mut pdf_fwd, mut pdf_rev } =
-            self.interaction.scatter(scene, self.subpath.incoming, outgoing, transport);
+            self.interaction.scatter::<P>(scene, self.subpath.incoming, outgoing, transport);
         if let (true, Some(guide)) = (P::GUIDED, guide) {
             [pdf_fwd, pdf_rev] =
                 guide.pdfs(self.guidance, transport, self.position(), outgoing, [pdf_fwd, pdf_rev]);

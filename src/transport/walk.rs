@@ -202,7 +202,7 @@ fn thinned<S: MisSums>(scene: &Scene, next: Departure<S>, stream: &mut Stream) -
 pub(super) struct Arrival<L> {
     /// World position; none at infinity.
     pub position: Option<Vec3>,
-    /// |cos| on a surface, 1 elsewhere.
+    /// See [`Interaction::cosine`]; 1 where it is of no surface and no collision.
     pub cosine: f32,
     /// sigma_t per channel at a collision, the rate of [`crate::medium::Emission::rate`] where emission is
     /// sampled in a medium, 1 elsewhere.
@@ -229,7 +229,7 @@ pub(super) fn land<P: Profile, V: Visitor<P>>(
     let position = interaction.position();
     let at = Arrival {
         position: Some(position),
-        cosine: interaction.cosine(departure.ray.direction),
+        cosine: interaction.cosine::<P>(scene, departure.ray.direction),
         sigma_t: interaction.sigma_t(),
     };
     let subpath = arrive::<P>(departure, &flight.state, flight.medium, &at, kind.hero)?;
@@ -304,11 +304,10 @@ pub(super) fn cross<P: Profile>(
     hero: usize,
 ) -> Option<Subpath<P::MisSums>> {
     let EmitterCrossing { point, medium, before, .. } = crossing;
-    let interaction = Interaction::Surface(*point);
     let at = Arrival {
         position: Some(point.position),
-        cosine: interaction.cosine(departure.ray.direction),
-        sigma_t: interaction.sigma_t(),
+        cosine: point.normal.dot(departure.ray.direction).abs(),
+        sigma_t: P::Channels::splat(1.0),
     };
     let mut subpath = arrive::<P>(departure, before, *medium, &at, hero)?;
     if crossing.certain {
@@ -335,11 +334,11 @@ fn squared_distance(a: Vec3, b: Vec3) -> f32 {
 ///
 /// LW96 eq. 12: the densities of the subpath, with p'(x_i+1) of the next vertex.
 #[inline]
-pub(super) fn set_out<S: MisSums>(
+pub(super) fn set_out<P: Profile>(
     scene: &Scene,
-    vertex: &Vertex<S>,
+    vertex: &Vertex<P::MisSums>,
     scattered: &ScatterSample,
-) -> Departure<S> {
+) -> Departure<P::MisSums> {
     let subpath = &vertex.subpath;
     let (origin, medium) = vertex.depart(scene, scattered.direction);
     let others_before = if scattered.dirac {
@@ -359,7 +358,7 @@ pub(super) fn set_out<S: MisSums>(
         pdf_fwd: scattered.pdf_fwd,
         others_before_segment: others_before
             .times(vertex.sigma_t())
-            .scaled(vertex.cosine(scattered.direction) * subpath.inv_pdf),
+            .scaled(vertex.cosine::<P>(scene, scattered.direction) * subpath.inv_pdf),
         pdf_over_hero: subpath.pdf_over_hero,
         pending: vertex.pending,
     }

@@ -85,6 +85,18 @@ fn fog_in_a_closed_box() {
     examine_all::<Vacuum>("vacuum", &build(&[CLEAR, INSIDE, ROOM, LAMP, BALL]), 400);
 }
 
+/// Extinction that depends on the direction of flight.
+#[test]
+fn flakes() {
+    examine_all::<Everything>("fog of flakes", &build(&[FLAKES, INSIDE, ROOM, LAMP, BALL]), 300);
+    examine_all::<Everything>("waves of flakes", &build(&[OUTSIDE, WAVES_OF_FLAKES, GROUND, LAMP, SKY]), 1000);
+    let strategies = Strategies { equiangular: true, ..Strategies::BDPT };
+    let setup = build(&[FLAKES, INSIDE, ROOM, LAMP, BULB, POINT, BALL]);
+    let along = examine::<Everything>("flakes, along", &setup, Options { strategies, ..ALL }, 300);
+    assert!(along.equiangular >= 30, "{}", along.equiangular);
+    examine_heuristics("flakes by other heuristics", &setup, Options { strategies, ..ALL }, 60);
+}
+
 /// Equiangular sampling: every kind of emitter, homogeneous, chromatic and varying media, with boundaries before and behind
 /// the point.
 #[test]

@@ -100,6 +100,15 @@ impl Node {
         }
     }
 
+    /// The same where `scene` has flakes: the area that they show.
+    pub(super) fn facing(&self, scene: &Scene, direction: DVec3) -> f64 {
+        let medium = &scene.media[self.medium.0 as usize];
+        match self.place {
+            Place::Volume(_) => f64::from(medium.area::<Everything>(direction.as_vec3())),
+            _ => self.cosine(direction),
+        }
+    }
+
     /// |cos| to the geometric normal of a surface; 1 elsewhere.
     pub(super) fn cosine(&self, direction: DVec3) -> f64 {
         match self.place {
@@ -245,7 +254,8 @@ impl Way {
         reach: f64,
     ) {
         let medium = &scene.media[medium.0 as usize];
-        let sigma_t = medium.bound().sigma_t;
+        let area = medium.area::<Everything>(direction.as_vec3());
+        let sigma_t = medium.bound().sigma_t * area;
         self.rounding += ULP * reach * f64::from(sigma_t.max_element());
         if let Some(varying) = medium.heterogeneous() {
             // Ends that are rounded sideways shift the whole leg to where extinction differs.
@@ -253,7 +263,8 @@ impl Way {
             let shifted = STEEPNESS * distance.clamp(0.0, extent);
             self.rounding += ULP * reach * f64::from(sigma_t.max_element()) * shifted;
             let depth = depth_of(varying, left, direction, distance);
-            self.depth = std::array::from_fn(|channel| self.depth[channel] + depth[channel]);
+            self.depth =
+                std::array::from_fn(|channel| self.depth[channel] + depth[channel] * f64::from(area));
             return;
         }
         for (channel, depth) in self.depth.iter_mut().enumerate() {

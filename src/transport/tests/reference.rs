@@ -218,7 +218,7 @@ impl<'a> Reference<'a> {
 
     /// ln of LW96 eq. 13, p' p'' / d^2, for a vertex `to` reached from `from`.
     fn made(&self, from: &Node, to: &Node, direction: f64, depths: &[f64; 3]) -> [f64; 3] {
-        let geometry = to.cosine(from.towards(to)) * from.inverse_distance_squared(to);
+        let geometry = to.facing(self.scene, from.towards(to)) * from.inverse_distance_squared(to);
         let flight = |c: usize| to.sigma_t(self.scene, c).ln() - depths[c];
         [0, 1, 2].map(|c| direction.ln() + geometry.ln() + flight(c))
     }

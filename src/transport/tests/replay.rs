@@ -223,7 +223,7 @@ impl Lead<'_> {
             if is_last {
                 led.end = Some(vertex.subpath);
             } else {
-                departure = set_out(scene, &vertex, &self.scattered::<P>(i, &vertex));
+                departure = set_out::<P>(scene, &vertex, &self.scattered::<P>(i, &vertex));
             }
             led.vertices.push(vertex);
         }

@@ -14,10 +14,20 @@ pub(crate) fn build(parts: &[&str]) -> Setup {
     std::fs::write(&file, text).unwrap();
     std::fs::write(folder.path().join("octahedron.obj"), OCTAHEDRON).unwrap();
     std::fs::write(folder.path().join("voxels.vol"), voxels()).unwrap();
+    std::fs::write(folder.path().join("flakes.vol"), flakes()).unwrap();
     let sky = |x: usize, y: usize| (x as f32 + 0.1, 3.0 - y as f32, if x == 2 { 40.0 } else { 0.5 });
     exr::prelude::write_rgb_file(folder.path().join("sky.exr"), 6, 4, sky).unwrap();
     let description = format::read(&file, &[]).unwrap_or_else(|error| panic!("{error}"));
     scene::build::build(&description, Overrides::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The matrix of flakes that lie askew.
+fn flakes() -> Vec<u8> {
+    let mut bytes = b"VOL\x03".to_vec();
+    [1i32, 1, 1, 1, 6].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+    let numbers = [0f32, 0.0, 0.0, 1.0, 1.0, 1.0, 0.04, 0.05, 0.9, 0.01, -0.1, 0.12];
+    numbers.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+    bytes
 }
 
 /// A grid of 5 x 4 x 3 voxels between 0 and 1 in Mitsuba's format.
@@ -55,6 +65,17 @@ pub(crate) const GLOWING_CHROMATIC_FOG: &str = r#""fog": {"type": "homogeneous",
 /// A room whose walls bound the fog in it.
 pub(crate) const SHELL: &str = r#""room": {"type": "cube", "flip_normals": true, "exterior": {"type": "ref", "id": "fog"},
     "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.7, 0.6, 0.5]}}}"#;
+
+/// Fog of flakes.
+pub(crate) const FLAKES: &str = r#""fog": {"type": "homogeneous", "sigma_t": {"type": "rgb", "value": [2, 1.5, 1]}, "albedo": 0.9,
+    "phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "flakes.vol"}}}"#;
+
+/// Flakes that vary.
+pub(crate) const WAVES_OF_FLAKES: &str = r#""smoke": {"type": "cube", "bsdf": {"type": "null"},
+    "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}],
+    "interior": {"type": "heterogeneous", "scale": 3, "albedo": 0.9,
+    "sigma_t": {"type": "cosine", "constant": 1, "a": {"type": "wave", "amplitude": 0.9, "vector": [3, 5, 1]}},
+    "phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "flakes.vol"}}}}"#;
 
 /// Smoke of a medium that has a name.
 pub(crate) const HAZE: &str = r#""haze": {"type": "homogeneous", "sigma_t": 1.2, "albedo": 0.95,

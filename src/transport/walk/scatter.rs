@@ -1,7 +1,7 @@
 //! How a walk scatters at a vertex (LW96 eq. 8 and 9): by the medium or the BSDF, or by a guide.
 
 use super::super::{
-    interaction::{Interaction, Scattering, shading_correction},
+    interaction::{Interaction, Scattering, back, shading_correction},
     mis::MisSums,
     profile::Profile,
     vertex::Vertex,
@@ -45,21 +45,21 @@ pub(super) fn scatter<P: Profile>(
     }
     let scattered = match kind.guide {
         Some(guide) if P::GUIDED => guided::<P>(scene, guide, vertex, kind.transport, stream)?,
-        _ => unguided(scene, vertex, kind.transport, stream)?,
+        _ => unguided::<P>(scene, vertex, kind.transport, stream)?,
     };
-    Some(set_out(scene, vertex, &scattered))
+    Some(set_out::<P>(scene, vertex, &scattered))
 }
 
 /// By the BSDF or the phase function.
 #[inline]
-pub(super) fn unguided<S: MisSums>(
+pub(super) fn unguided<P: Profile>(
     scene: &Scene,
-    vertex: &Vertex<S>,
+    vertex: &Vertex<P::MisSums>,
     transport: Transport,
     stream: &mut Stream,
 ) -> Option<ScatterSample> {
     match &vertex.interaction {
-        Interaction::Medium(_, properties) => Some(collide(scene, vertex, properties, stream)),
+        Interaction::Medium(_, properties) => Some(collide::<P>(scene, vertex, properties, stream)),
         Interaction::Surface(point) => reflect(scene, vertex, point, transport, stream),
     }
 }
@@ -73,7 +73,7 @@ pub(super) fn guided<P: Profile>(
     stream: &mut Stream,
 ) -> Option<ScatterSample> {
     let Some(direction) = guide.sample(vertex.guidance, transport, vertex.position(), stream) else {
-        let sample = unguided(scene, vertex, transport, stream)?;
+        let sample = unguided::<P>(scene, vertex, transport, stream)?;
         let pdfs = [sample.pdf_fwd, sample.pdf_rev];
         let [pdf_fwd, pdf_rev] = if sample.dirac {
             guide.unguided(vertex.guidance, transport, pdfs)
@@ -100,9 +100,9 @@ pub(super) fn guided<P: Profile>(
 
 /// LW96 eq. 8: p_scattering, sigma/kappa being the probability of survival.
 #[inline]
-pub(super) fn collide<S: MisSums>(
+pub(super) fn collide<P: Profile>(
     scene: &Scene,
-    vertex: &Vertex<S>,
+    vertex: &Vertex<P::MisSums>,
     properties: &MediumProperties,
     stream: &mut Stream,
 ) -> ScatterSample {
@@ -111,8 +111,9 @@ pub(super) fn collide<S: MisSums>(
     let (position, flight) = (vertex.position(), -vertex.subpath.incoming);
     let direction = medium.phase.sample_at(position, flight, stream);
     let pdf = medium.phase.pdf_sr_at(position, Deflection::between(flight, direction)) * survival;
+    let pdf_rev = pdf * back::<P>(medium, vertex.subpath.incoming, direction);
     let weight = properties.albedo / survival;
-    ScatterSample { direction, weight, pdf_fwd: pdf, pdf_rev: pdf, dirac: false }
+    ScatterSample { direction, weight, pdf_fwd: pdf, pdf_rev, dirac: false }
 }
 
 /// LW96 eq. 9: p_reflection, or the density that the BSDF samples by.

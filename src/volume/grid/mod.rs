@@ -19,7 +19,7 @@ mod wrap;
 
 use super::{Coarse, Place, VolumeModel};
 use crate::{
-    description::{Params, Table, table},
+    description::{Library, Object, Params, Table, table},
     error::{Error, Result},
     math::{
         Affine3A, Channels, DAffine3, DVec3, RaySegment, Spectrum, Vec3, axes,
@@ -31,7 +31,10 @@ use checks::*;
 use convert::Convert;
 pub use convert::HOTTEST;
 use lattice::{BRICK, Brick, Lattice};
-use std::{path::Path, sync::Arc};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 use voxel::Voxel;
 use walk::{Line, Target, Walk};
 
@@ -97,6 +100,63 @@ macro_rules! each {
     };
 }
 
+/// What a description gives.
+struct Given<'a> {
+    path: PathBuf,
+    grid: Option<&'a str>,
+    filter: Filter,
+    wrap: Wrap,
+    to_world: DAffine3,
+    uses_file_box: bool,
+    convert: Convert,
+}
+
+impl<'a> Given<'a> {
+    fn read(params: &Params<'a>, place: &Place) -> Result<Self> {
+        let path = params.file("filename")?;
+        let is_vdb = file::is_vdb(&path);
+        if params.object.properties.iter().any(|property| property.name == "data")
+            || (params.has("grid") && !is_vdb)
+        {
+            let remedy = "save the grid to a file and give its name as \"filename\"; \"grid\" names one of several \
+                          in a .vdb or .nvdb file";
+            return Err(Error::new(params.location(), "a grid file", "a grid in memory", remedy));
+        }
+        params.boolean("raw")?;
+        let filters = [("trilinear", Filter::Trilinear), ("nearest", Filter::Nearest)];
+        Ok(Self {
+            grid: params.optional_string("grid")?,
+            filter: params.choice("filter_type", &filters)?,
+            wrap: params.choice("wrap_mode", &Wrap::NAMES)?,
+            to_world: place.to_world(params)?,
+            uses_file_box: params.optional_boolean("use_grid_bbox")?.unwrap_or(is_vdb),
+            convert: Convert::read(params)?,
+            path,
+        })
+    }
+}
+
+/// The six numbers that `object`, a `gridvolume` of six channels, has everywhere: wherever it lies, and beyond it, as in
+/// Mitsuba.
+pub fn sixfold(object: &Object, library: &Library, place: &Place) -> Result<[f32; 6]> {
+    let complain = |expected, found: &str, remedy| Err(Error::new(&object.location, expected, found, remedy));
+    if object.plugin != "gridvolume" {
+        let found = format!("\"{}\"", object.plugin);
+        return complain("a gridvolume of six channels", &found, "use a gridvolume, as Mitsuba does");
+    }
+    let params = Params::new(object, library, &Grid::TABLE);
+    let path = Given::read(&params, place)?.path;
+    params.finish()?;
+    match vol::sixfold(&path)?.as_slice() {
+        [first, others @ ..] if others.iter().all(|other| other == first) => Ok(*first),
+        _ => complain(
+            "a grid whose six numbers are the same in all voxels",
+            "one whose numbers vary",
+            "save one voxel; for flakes that vary, overlap several media of one matrix each",
+        ),
+    }
+}
+
 impl Grid {
     pub(super) const TABLE: Table = table! {
         "Voxels from a file; they fill the unit cube of `to_world`, or the file's own box.";
@@ -115,24 +175,9 @@ impl Grid {
     };
 
     pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
-        let path = params.file("filename")?;
-        let is_vdb = file::is_vdb(&path);
-        if params.object.properties.iter().any(|property| property.name == "data")
-            || (params.has("grid") && !is_vdb)
-        {
-            let remedy = "save the grid to a file and give its name as \"filename\"; \"grid\" names one of several \
-                          in a .vdb or .nvdb file";
-            return Err(Error::new(params.location(), "a grid file", "a grid in memory", remedy));
-        }
-        let grid = params.optional_string("grid")?;
-        let filters = [("trilinear", Filter::Trilinear), ("nearest", Filter::Nearest)];
-        let filter = params.choice("filter_type", &filters)?;
-        let wrap = params.choice("wrap_mode", &Wrap::NAMES)?;
-        params.boolean("raw")?;
-        let mut to_world = place.to_world(params)?;
-        let uses_file_box = params.optional_boolean("use_grid_bbox")?.unwrap_or(is_vdb);
-        let source =
-            file::open(&path, grid, Convert::read(params)?)?.mended(&path, place.most, params.library)?;
+        let Given { path, grid, filter, wrap, mut to_world, uses_file_box, convert } =
+            Given::read(params, place)?;
+        let source = file::open(&path, grid, convert)?.mended(&path, place.most, params.library)?;
         if uses_file_box {
             check_box(&path, &source.to_file)?;
             to_world *= source.to_file;

@@ -43,13 +43,24 @@ struct Header {
     bounds: [DVec3; 2],
 }
 
-/// Reads a whole file.
-pub(super) fn read(path: &Path) -> Result<Source> {
+/// Opens a file whose number of channels is one of `channels`: what follows its header, and its length.
+fn open(path: &Path, channels: &[usize]) -> Result<(Header, BufReader<File>, u64)> {
     let io = |error| Error::io(path, "read", &error);
     let file = File::open(path).map_err(io)?;
     let length = file.metadata().map_err(io)?.len();
     let mut file = BufReader::new(file);
-    let header = Header::read(path, &mut file, length)?;
+    Ok((Header::read(path, &mut file, length, channels)?, file, length))
+}
+
+/// All voxels of a file of six channels.
+pub(super) fn sixfold(path: &Path) -> Result<Vec<[f32; 6]>> {
+    let (_, mut file, length) = open(path, &[6])?;
+    numbers(path, &mut file, length, |voxel| voxel)
+}
+
+/// Reads a whole file.
+pub(super) fn read(path: &Path) -> Result<Source> {
+    let (header, mut file, length) = open(path, &[1, 3])?;
     let [low, high] = header.bounds;
     let to_file = DAffine3 { matrix3: DMat3::from_diagonal(high - low), translation: low };
     let size = header.size;
@@ -130,7 +141,7 @@ impl Header {
     }
 
     /// Reads it and compares it with the length of its file.
-    fn read(path: &Path, file: &mut impl Read, length: u64) -> Result<Self> {
+    fn read(path: &Path, file: &mut impl Read, length: u64, wanted: &[usize]) -> Result<Self> {
         let mut bytes = [0; HEADER];
         if length < HEADER as u64 {
             let expected = format!("a .vol file, with a header of {HEADER} bytes");
@@ -141,7 +152,7 @@ impl Header {
         check_kind(path, &bytes)?;
         let header = Self {
             size: dimensions(path, &bytes)?,
-            channels: channels(path, &bytes)?,
+            channels: channels(path, &bytes, wanted)?,
             bounds: [bounds(&bytes, 24), bounds(&bytes, 36)],
         };
         header.check_length(path, length)?;
@@ -195,14 +206,18 @@ fn dimensions(path: &Path, bytes: &[u8; HEADER]) -> Result<[usize; 3]> {
     ))
 }
 
-fn channels(path: &Path, bytes: &[u8; HEADER]) -> Result<usize> {
-    match integer(bytes, 20) {
-        channels @ (1 | 3) => Ok(channels as usize),
-        other => {
-            let remedy = "use a grid of densities or colours; phase function parameters (6 channels) are not supported";
-            Err(Error::new(path.display(), "1 or 3 channels", format!("{other} channels"), remedy))
-        }
+fn channels(path: &Path, bytes: &[u8; HEADER], wanted: &[usize]) -> Result<usize> {
+    let found = integer(bytes, 20);
+    if let Some(channels) = wanted.iter().find(|n| i64::try_from(**n) == Ok(i64::from(found))) {
+        return Ok(*channels);
     }
+    let words: Vec<String> = wanted.iter().map(usize::to_string).collect();
+    let remedy = match wanted {
+        [6] => "save xx, yy, zz, xy, xz and yz of the matrix in every voxel",
+        _ => "use a grid of densities or colours; one of 6 channels is the \"S\" of an sggx",
+    };
+    let expected = format!("{} channels", words.join(" or "));
+    Err(Error::new(path.display(), expected, format!("{found} channels"), remedy))
 }
 
 fn word(bytes: &[u8; HEADER], at: usize) -> [u8; 4] {

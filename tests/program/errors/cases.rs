@@ -23,6 +23,10 @@ const PAINTED: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x
     property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\n\
     end_header\n0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2\n";
 
+/// A grid of one voxel with six numbers, half of what is to be given.
+const VOXEL: &str = "VOL\x03\x01\0\0\0\x01\0\0\0\x01\0\0\0\x01\0\0\0\x06\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0?\0\0\0?\0\0\0?\
+    \0\0\0?\0\0\0?\0\0\0?\0\0\0\0\0\0\0\0\0\0\0\0";
+
 const CAMERA: [&str; 2] = ["<sensor type=\"perspective\"/>", "\"camera\": {\"type\": \"perspective\"}"];
 
 impl Case {
@@ -58,6 +62,16 @@ impl Case {
     /// In a scene of JSON that has a camera.
     fn json(name: &'static str, inside: &str) -> Self {
         Self::of(name, "scene.json", format!("{{\"type\": \"scene\",\n{inside},\n{}}}", CAMERA[1]))
+    }
+
+    /// In a scene of JSON that has a camera, before a sky: a medium of flakes, which has more.
+    fn flakes(name: &'static str, kind: &str, more: &str) -> Self {
+        let phase = r#""phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "flakes.vol"}}"#;
+        let medium = format!("{{\"type\": \"{kind}\", {more}{phase}}}");
+        let inside = format!(
+            r#""fog": {{"type": "sphere", "interior": {medium}, "bsdf": {{"type": "null"}}}}, "sky": {{"type": "constant"}}"#
+        );
+        Self::json(name, &inside).beside("flakes.vol", VOXEL)
     }
 
     fn beside(mut self, name: &'static str, content: &str) -> Self {
@@ -441,6 +455,16 @@ pub(super) fn all() -> Vec<Case> {
         Case::json("an instance that is flat", r#""g": {"type": "shapegroup", "id": "g", "a": {"type": "sphere"}}, "b": {"type": "instance", "to_world": [{"type": "scale", "value": [1, 0, 1]}], "c": {"type": "ref", "id": "g"}}, "sky": {"type": "constant"}"#),
         Case::json("a group that no instance refers to", r#""g": {"type": "shapegroup", "id": "g", "a": {"type": "sphere"}}, "sky": {"type": "constant"}"#).warned(),
         Case::json("a merge with a transform of its own", r#""m": {"type": "merge", "to_world": [{"type": "scale", "value": 2}], "a": {"type": "sphere"}}, "sky": {"type": "constant"}"#),
+        Case::json("flakes without a matrix", r#""fog": {"type": "homogeneous", "phase": {"type": "sggx"}}"#),
+        Case::json("flakes by a number", r#""fog": {"type": "homogeneous", "phase": {"type": "sggx", "S": 1}}"#),
+        Case::json("flakes by another volume", r#""fog": {"type": "homogeneous", "phase": {"type": "sggx", "S": {"type": "constvolume"}}}"#),
+        Case::json("flakes without thickness", r#""fog": {"type": "homogeneous", "phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "flat.vol"}}}"#).beside("flat.vol", &VOXEL.replace("?\0\0\0\0\0\0\0\0\0\0\0\0", "\0\0\0\0\0\0\0\0\0\0\0\0\0")),
+        Case::json("flakes that vary", r#""fog": {"type": "homogeneous", "phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "two.vol"}}}"#).beside("two.vol", &(VOXEL.replacen("VOL\x03\x01\0\0\0\x01", "VOL\x03\x01\0\0\0\x02", 1) + &VOXEL[48..].replace('?', "@"))),
+        Case::json("flakes by a density", r#""fog": {"type": "homogeneous", "phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "one.vol"}}}"#).beside("one.vol", &VOXEL.replace('\x06', "\x01")),
+        Case::json("a density of six channels", r#""fog": {"type": "heterogeneous", "sigma_t": {"type": "gridvolume", "filename": "flakes.vol"}}"#).beside("flakes.vol", VOXEL),
+        Case::flakes("flakes that emit", "homogeneous", r#""emission": 1, "#),
+        Case::flakes("flakes by steps", "heterogeneous", r#""tracker": "march", "#),
+        Case::json("flakes in a blend", r#""fog": {"type": "homogeneous", "phase": {"type": "blendphase", "weight": 0.5, "a": {"type": "hg"}, "b": {"type": "sggx", "S": {"type": "gridvolume", "filename": "flakes.vol"}}}}"#).beside("flakes.vol", VOXEL),
         Case::json("a sky by direction and by time", r#""sky": {"type": "sunsky", "sun_direction": [1, 0, 1], "hour": 9}"#),
         Case::json("a sky at night", r#""sky": {"type": "sunsky", "hour": 23}"#).warned(),
         Case::json("a sky too hazy", r#""sky": {"type": "sunsky", "turbidity": 12}"#),

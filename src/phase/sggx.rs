@@ -1,0 +1,214 @@
+//! Specular microflakes whose normals are distributed as those of an ellipsoid (Heitz et al. 2015, "The SGGX microflake
+//! distribution"): Mitsuba's `sggx`.
+//!
+//! The flakes show an area of sqrt(w S w) to light that flies in direction w, per unit of extinction: the medium has that
+//! factor on its extinction ([`crate::medium::Medium::area`]). With S = B^T B, the linear map B takes the ellipsoid to a
+//! sphere. Shares of what is seen of it stay the same, so that its visible normals are those of the sphere taken back.
+
+use super::{Deflection, PhaseModel};
+use crate::{
+    description::{Params, Table, table},
+    error::{Error, Result},
+    math::{DMat3, DVec3, Frame, Mat3, Vec3, warp},
+    sampling::Stream,
+    volume::{self, Place},
+};
+use std::{f64::consts::PI, sync::Arc};
+
+/// Flakes of one distribution everywhere.
+#[derive(Clone, Debug)]
+pub struct Sggx(Arc<Ellipsoid>);
+
+#[derive(Debug)]
+struct Ellipsoid {
+    /// B.
+    root: Mat3,
+    /// The inverse of its transpose: normals of unit length to where S^-1 is the squared length.
+    inverse: Mat3,
+    /// A quarter of the density of normals (1/sr) where that is 1.
+    quarter: f32,
+}
+
+/// The largest number on the diagonal of S, from the first to the second; the thinnest flakes, of which single precision
+/// can tell normals apart, have the third of that as the square of their thickness.
+const RANGE: [f64; 3] = [1e-12, 1e12, 1e-8];
+
+impl Sggx {
+    pub(super) const TABLE: Table = table! {
+        "Specular microflakes (Heitz et al. 2015): mirrors that lie as the surface of an ellipsoid does. The area that they show scales the medium's extinction.";
+        object("S", "volume", "A `gridvolume` of 6 channels: xx, yy, zz, xy, xz, yz of a positive definite matrix, the same everywhere; n S n is the squared area seen along n."),
+    };
+
+    /// By S; none if that is no positive definite matrix, or out of range.
+    fn new(matrix: DMat3) -> Option<Self> {
+        let [least, most, thinnest] = RANGE;
+        let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+        let largest = x.x.max(y.y).max(z.z);
+        // Cholesky: S = L L^T, and B = L^T.
+        let pivot = |squared: f64| (squared > thinnest * largest).then(|| squared.sqrt());
+        let a = pivot(x.x)?;
+        let (b, c) = (x.y / a, x.z / a);
+        let d = pivot(y.y - b * b)?;
+        let e = (y.z - b * c) / d;
+        let f = pivot(z.z - c * c - e * e)?;
+        let lower = DMat3::from_cols(DVec3::new(a, b, c), DVec3::new(0.0, d, e), DVec3::new(0.0, 0.0, f));
+        let ellipsoid = Ellipsoid {
+            root: lower.transpose().as_mat3(),
+            inverse: lower.inverse().as_mat3(),
+            quarter: (0.25 / (PI * a * d * f)) as f32,
+        };
+        (least..=most).contains(&largest).then(|| Self(Arc::new(ellipsoid)))
+    }
+
+    pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
+        let grid = params.child("S")?.ok_or_else(|| params.missing("S"))?;
+        let numbers = volume::sixfold(grid.object, params.library, place)?;
+        // In an instance, areas turn with what they are of; extinction stays what it is per metre.
+        let placed = place.instance.matrix3;
+        let turn = placed.inverse().transpose() * placed.determinant().abs().cbrt();
+        Self::new(turn * symmetric(numbers.map(f64::from)) * turn.transpose()).ok_or_else(|| {
+            let expected = "xx, yy, zz, xy, xz, yz of a positive definite matrix";
+            let remedy = "raise xx, yy and zz: the square of each other number is less than the product of the two \
+                          in its row and column, and flakes have some thickness";
+            Error::new(&grid.object.location, expected, format!("{numbers:?}"), remedy)
+        })
+    }
+
+    /// Flakes without an order: as isotropic as they are many.
+    #[cfg(test)]
+    pub(super) fn examples() -> Vec<Self> {
+        [1.0, 0.3].iter().filter_map(|size| Self::new(DMat3::IDENTITY * *size)).collect()
+    }
+
+    /// The area that they show, per unit of extinction, to light that flies in unit `direction` or back.
+    #[inline]
+    pub fn area(&self, direction: Vec3) -> f32 {
+        (self.0.root * direction).length()
+    }
+}
+
+/// The matrix of the numbers xx, yy, zz, xy, xz and yz.
+fn symmetric([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> DMat3 {
+    DMat3::from_cols(DVec3::new(xx, xy, xz), DVec3::new(xy, yy, yz), DVec3::new(xz, yz, zz))
+}
+
+impl PhaseModel for Sggx {
+    /// A quarter of the density of normals at the one that mirrors so, over the area seen.
+    #[inline]
+    fn pdf_sr(&self, turn: Deflection) -> f32 {
+        let normal = turn.normal();
+        let squared = (self.0.inverse * normal).length_squared() / normal.length_squared();
+        self.0.quarter / (squared * squared * self.area(turn.before()))
+    }
+
+    #[inline]
+    fn sample(&self, direction: Vec3, stream: &mut Stream) -> Vec3 {
+        let facing = Frame::around((self.0.root * -direction).normalize());
+        let on_sphere = facing.to_world(warp::to_cosine_hemisphere(stream.square()));
+        let normal = (self.0.root.transpose() * on_sphere).normalize();
+        (direction - 2.0 * direction.dot(normal) * normal).normalize()
+    }
+
+    /// In light from everywhere, flakes reflect as much onwards as back.
+    fn mean_cosine(&self) -> f32 {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        math::vec3,
+        sampling::stream::Purpose,
+        testing::{chi_square, significance},
+    };
+    use std::f32::consts::{FRAC_PI_4, TAU};
+
+    const SKEWED: [f64; 6] = [0.09, 0.5, 0.25, 0.05, 0.02, 0.01];
+
+    fn flakes(numbers: [f64; 6]) -> Sggx {
+        Sggx::new(symmetric(numbers)).unwrap()
+    }
+
+    fn pdf(flakes: &Sggx, towards: Vec3, outgoing: Vec3) -> f32 {
+        flakes.pdf_sr(Deflection::between(-towards, outgoing))
+    }
+
+    #[test]
+    fn values_are_those_of_mitsuba() {
+        let flakes = flakes(SKEWED);
+        let outgoing = [Vec3::Z, vec3(0.48, 0.6, 0.64), vec3(-0.8, 0.0, 0.6)];
+        for (towards, area, values) in [
+            (Vec3::X, 0.3, [0.051_364_4, 0.036_885, 0.139_403]),
+            (vec3(0.6, 0.8, 0.0), 0.632_772, [0.086_896_3, 0.068_656_4, 0.087_319_9]),
+        ] {
+            assert!((flakes.area(towards) / area - 1.0).abs() < 1e-5);
+            for (outgoing, value) in outgoing.iter().zip(values) {
+                let found = pdf(&flakes, towards, *outgoing);
+                assert!((found / value - 1.0).abs() < 1e-5, "{towards} {outgoing}: {found} for {value}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_collides_and_turns_is_the_same_both_ways() {
+        let (flakes, a, b) = (flakes(SKEWED), vec3(0.6, 0.0, 0.8), vec3(-0.48, 0.6, 0.64));
+        let (there, back) = (pdf(&flakes, a, b) * flakes.area(a), pdf(&flakes, b, a) * flakes.area(b));
+        assert!((there / back - 1.0).abs() < 1e-5 && there > 0.0);
+        assert!(pdf(&flakes, a, -a).is_finite(), "straight on, mirrors are grazed");
+    }
+
+    /// Cells of the sphere of directions by cosine to z and azimuth.
+    const CELLS: [usize; 2] = [24, 16];
+
+    fn cell(direction: Vec3) -> usize {
+        let row = ((0.5 * (direction.z + 1.0) * CELLS[0] as f32) as usize).min(CELLS[0] - 1);
+        let around = (direction.y.atan2(direction.x) / TAU).rem_euclid(1.0);
+        row * CELLS[1] + ((around * CELLS[1] as f32) as usize).min(CELLS[1] - 1)
+    }
+
+    #[test]
+    fn samples_are_distributed_as_the_density_says() {
+        let matrices = [SKEWED, [0.04, 0.05, 0.9, 0.01, -0.1, 0.12], [2.0, 0.1, 3.0, 0.2, -1.0, 0.3]];
+        let directions = [-Vec3::Z, Vec3::X, vec3(0.6, -0.48, 0.64)];
+        let (samples, fine) = (100_000, 1 << 20);
+        for (matrix, towards) in matrices.iter().flat_map(|matrix| directions.map(|w| (matrix, w))) {
+            let flakes = flakes(*matrix);
+            let mut stream = Stream::new(3, 0, 0, Purpose::Study);
+            let (mut counts, mut expected) = (vec![0; CELLS[0] * CELLS[1]], vec![0.0; CELLS[0] * CELLS[1]]);
+            (0..samples).for_each(|_| counts[cell(flakes.sample(-towards, &mut stream))] += 1);
+            for i in 0..fine {
+                let [row, column] = [i / 1024, i % 1024].map(|k| (k as f32 + 0.5) / 1024.0);
+                let direction = warp::spherical(2.0 * row - 1.0, TAU * column);
+                let share = 16.0 * FRAC_PI_4 * pdf(&flakes, towards, direction) / fine as f32;
+                expected[cell(direction)] += f64::from(share) * f64::from(samples);
+            }
+            let total = expected.iter().sum::<f64>() / f64::from(samples);
+            assert!((total - 1.0).abs() < 1e-3, "{matrix:?}, {towards}: {total}");
+            let p = chi_square(&counts, &expected);
+            assert!(p > significance(9), "{matrix:?}, {towards}: p-value {p}");
+        }
+    }
+
+    #[test]
+    fn thin_flakes_are_mirrors_and_what_is_flat_or_no_number_is_refused() {
+        let mirror = flakes([1e-7, 1e-7, 1.0, 0.0, 0.0, 0.0]);
+        let mut stream = Stream::new(3, 0, 0, Purpose::Study);
+        let turned = mirror.sample(vec3(0.6, 0.0, -0.8), &mut stream);
+        assert!(turned.distance(vec3(0.6, 0.0, 0.8)) < 0.01, "{turned}");
+        for (numbers, is_fine) in [
+            ([1.0, 1.0, 1.0, 0.0, 0.0, 0.0], true),
+            ([1.0, 1.0, 0.0, 0.0, 0.0, 0.0], false),
+            ([1.0, 1.0, 1.0, 1.0, 0.0, 0.0], false),
+            ([1.0, -1.0, 1.0, 0.0, 0.0, 0.0], false),
+            ([1.0, 1.0, 1.0, 0.8, 0.8, -0.8], false),
+            ([f64::NAN, 1.0, 1.0, 0.0, 0.0, 0.0], false),
+            ([1.0, 1.0, 1.0, 0.0, f64::NAN, 0.0], false),
+            ([f64::INFINITY, 1.0, 1.0, 0.0, 0.0, 0.0], false),
+            ([1e-30, 1e-30, 1e-30, 0.0, 0.0, 0.0], false),
+        ] {
+            assert_eq!(Sggx::new(symmetric(numbers)).is_some(), is_fine, "{numbers:?}");
+        }
+    }
+}
