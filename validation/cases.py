@@ -205,6 +205,7 @@ CASES = (
     Case("emitter_projector.json"),
     Case("emitter_spot.json", effort=2),
     Case("emitter_sunsky.json"),
+    Case("emitter_timed_sunsky.json"),
     Case("emitter_on_null.json"),
     Case("emitter_textured_area.json", EYE),
     Case("emitter_directional_area.json", LIGHT),

@@ -14,7 +14,7 @@ const MEASURED: &str =
 const PLUGINS: &[Plugins] = &[
     (
         "emitter",
-        &["sky", "sun", "preetham", "hosek", "nishita", "skylight", "timed_sunsky"],
+        &["sky", "sun", "preetham", "hosek", "nishita", "skylight"],
         "use \"sunsky\", or \"envmap\" with an image of the sky",
     ),
     (

@@ -195,10 +195,11 @@ const COMMON: &[Parameter] = rows! {
 };
 
 /// Makes an enum with its dispatch for each kind, and the registry, from one row an emitter. An emitter has
-/// `fn build(&Params) -> Result<Self>` and the table of its parameters, those in [`COMMON`] included.
+/// `fn build(&Params) -> Result<Self>` and the table of its parameters, those in [`COMMON`] included; where it has a second
+/// name, these for that too.
 macro_rules! emitters {
     ($($(#[$doc:meta])* $kind:ident($any:ident: $contract:ident) {
-        $($name:literal => $model:ident,)*
+        $($name:literal => $model:ident $(| $more:literal => $build:ident $table:ident)?,)*
     } [$($methods:tt)*])*) => {
         $(models! { $(#[$doc])* $any: $contract [$($model)*] $($methods)* })*
 
@@ -207,7 +208,11 @@ macro_rules! emitters {
             $($(($name, Plugin {
                 table: $model::TABLE,
                 build: |params: &Params<'_>| $model::build(params).map($any::from).map(Kind::$kind),
-            }),)*)*
+            }),
+            $(($more, Plugin {
+                table: $model::$table,
+                build: |params: &Params<'_>| $model::$build(params).map($any::from).map(Kind::$kind),
+            }),)?)*)*
         ]);
     };
 }
@@ -243,7 +248,7 @@ emitters! {
         "directional" => Directional,
         "constant" => Constant,
         "envmap" => EnvMap,
-        "sunsky" => SunSky,
+        "sunsky" => SunSky | "timed_sunsky" => timed TIMED_TABLE,
     } [
         #[inline] fn radiance(towards: Vec3) -> Spectrum;
         #[inline] fn sample(stream: &mut Stream) -> Vec3;

@@ -1,21 +1,22 @@
-//! A clear sky with the sun: Mitsuba's `sunsky`.
+//! A clear sky with the sun: Mitsuba's `sunsky`, and on the mean over hours and days its `timed_sunsky`.
 
 mod hosek;
 mod position;
+mod timed;
 
 use super::{
     COMMON, InfiniteModel, Seen,
     envmap::{EnvMap, of_pixel, to_local},
 };
 use crate::{
-    description::{Params, Table, table},
+    description::{Params, Table, parameter::Parameter, rows, table},
     error::Result,
     math::{DMat3, DVec3, Frame, Spectrum, SpectrumExt, Vec3, vec2, vec3, warp},
     sampling::Stream,
     texture::image::Image,
 };
 use hosek::{Sky, sun_irradiance};
-use position::{NAMES, WHEN, towards_sun};
+use position::{NAMES, PLACE, WHEN, towards_sun};
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 /// Columns and rows of the map of the sky: a third of a degree, so that interpolation is off by 0.1 % at most.
@@ -29,6 +30,40 @@ const LEAST_SHARE: f64 = 0.1;
 
 /// A smaller sun (rad) counts as of this size: directions in f32 could not tell its inside from its edge.
 const LEAST_HALF_APERTURE: f64 = 1e-4;
+
+/// The parameters of what shines.
+const LIGHT: &[Parameter] = rows! {
+    number("turbidity", "", within(1.0, 10.0), Is(3.0), "Haze: 2 is very clear, 10 hazy."),
+    colour("albedo", "", 1.0, Is(0.3), "Albedo of the ground, which lights the sky."),
+    number("sun_scale", "", within(0.0, MAX), Is(1.0), "Scales the sun's radiance; 0: none."),
+    number("sky_scale", "", within(0.0, MAX), Is(1.0), "Scales the sky's radiance; 0: none."),
+    number("sun_aperture", "degrees", between(0.0, 90.0), Is(0.5358), "Angle that the sun spans. Its irradiance stays the same."),
+    ignored("complex_sun", "the sun's disk is even, at the same irradiance"),
+    transform("to_world", "Rotates or mirrors it; before that, z is up."),
+};
+
+/// Their values.
+struct Light {
+    turbidity: f32,
+    albedo: Spectrum,
+    sun_scale: f64,
+    sky_scale: f64,
+    half_aperture: f64,
+    to_local: DMat3,
+}
+
+impl Light {
+    fn read(params: &Params<'_>) -> Result<Self> {
+        Ok(Self {
+            turbidity: params.float("turbidity")? as f32,
+            albedo: params.color("albedo")?,
+            sun_scale: params.float("sun_scale")?,
+            sky_scale: params.float("sky_scale")?,
+            half_aperture: (0.5 * params.float("sun_aperture")?.to_radians()).max(LEAST_HALF_APERTURE),
+            to_local: to_local(params)?,
+        })
+    }
+}
 
 /// The sky as a map, and the sun as an even disk in it. Nothing shines from below the horizon.
 #[derive(Clone, Debug)]
@@ -56,24 +91,13 @@ struct Sun {
 impl SunSky {
     pub(super) const TABLE: Table = table! {
         "A clear sky with the sun: the models of Hosek and Wilkie 2012 and 2013. Without `sun_direction`, the sun stands where it does at that date, time and place; x is south, y west.";
-        number("turbidity", "", within(1.0, 10.0), Is(3.0), "Haze: 2 is very clear, 10 hazy."),
-        colour("albedo", "", 1.0, Is(0.3), "Albedo of the ground, which lights the sky."),
-        vector("sun_direction", "", Said("by date, time and place"), "Direction to the sun in the world."),
-        number("sun_scale", "", within(0.0, MAX), Is(1.0), "Scales the sun's radiance; 0: none."),
-        number("sky_scale", "", within(0.0, MAX), Is(1.0), "Scales the sky's radiance; 0: none."),
-        number("sun_aperture", "degrees", between(0.0, 90.0), Is(0.5358), "Angle that the sun spans. Its irradiance stays the same."),
-        ignored("complex_sun", "the sun's disk is even, at the same irradiance"),
-        transform("to_world", "Rotates or mirrors it; before that, z is up.");
-        WHEN, COMMON
+        vector("sun_direction", "", Said("by date, time and place"), "Direction to the sun in the world.");
+        LIGHT, PLACE, WHEN, COMMON
     };
 
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        let to_local = to_local(params)?;
+        let Light { turbidity, albedo, sun_scale, sky_scale, half_aperture, to_local } = Light::read(params)?;
         let sun = sun_direction(params, to_local)?;
-        let [sun_scale, sky_scale] = [params.float("sun_scale")?, params.float("sky_scale")?];
-        let turbidity = params.float("turbidity")? as f32;
-        let albedo = params.color("albedo")?;
-        let half_aperture = (0.5 * params.float("sun_aperture")?.to_radians()).max(LEAST_HALF_APERTURE);
         let is_day = sun.z >= 0.0;
         if !is_day {
             let text = "the sun is below the horizon, so that this sky is black. Change its date and time or its direction";

@@ -8,11 +8,15 @@ use crate::{
 };
 use std::f64::consts::PI;
 
-/// The parameters of date, time and place.
-pub(super) const WHEN: &[Parameter] = rows! {
+/// The parameters of the place.
+pub(super) const PLACE: &[Parameter] = rows! {
     number("latitude", "degrees", within(-90.0, 90.0), Is(35.6894), "Latitude, north of the equator."),
     number("longitude", "degrees", within(-180.0, 180.0), Is(139.6917), "Longitude, east of Greenwich."),
     number("timezone", "h", within(-24.0, 24.0), Is(9.0), "What the clock is ahead of universal time."),
+};
+
+/// The parameters of date and time.
+pub(super) const WHEN: &[Parameter] = rows! {
     integer("year", within(1.0, 9999.0), Is(2010.0), "Year."),
     integer("month", within(1.0, 12.0), Is(7.0), "Month."),
     integer("day", within(1.0, 31.0), Is(10.0), "Day of the month."),
@@ -21,25 +25,54 @@ pub(super) const WHEN: &[Parameter] = rows! {
     number("second", "s", within(0.0, 60.0), Is(0.0), "Second."),
 };
 
-/// Their names.
+/// The names of all.
 pub(super) const NAMES: [&str; 9] =
     ["latitude", "longitude", "timezone", "year", "month", "day", "hour", "minute", "second"];
+
+/// Where on earth.
+pub(super) struct Place {
+    /// Radians.
+    latitude: f64,
+    /// Degrees.
+    longitude: f64,
+    /// What the clock is ahead of universal time (h).
+    timezone: f64,
+}
+
+impl Place {
+    /// At so many degrees, where the clock is `timezone` hours ahead of universal time.
+    pub(super) fn new(latitude: f64, longitude: f64, timezone: f64) -> Self {
+        Self { latitude: latitude.to_radians(), longitude, timezone }
+    }
+
+    pub(super) fn read(params: &Params<'_>) -> Result<Self> {
+        Ok(Self::new(params.float("latitude")?, params.float("longitude")?, params.float("timezone")?))
+    }
+
+    /// The unit vector to the sun where the `clock` shows so many hours, `day` days after the 1st of January 2000: x south, y
+    /// west, z up.
+    pub(super) fn sun(&self, day: f64, clock: f64) -> DVec3 {
+        let universal = clock - self.timezone;
+        local(day + universal / 24.0 - 0.5, universal, self.latitude, self.longitude)
+    }
+}
 
 /// The unit vector to the sun: x south, y west, z up.
 pub(super) fn towards_sun(params: &Params<'_>) -> Result<DVec3> {
     let clock = params.float("hour")? + (params.float("minute")? + params.float("second")? / 60.0) / 60.0;
-    let universal = clock - params.float("timezone")?;
     let date = [params.integer("year")?, params.integer("month")?, params.integer("day")?];
-    let [year, month, day] = date;
+    Ok(Place::read(params)?.sun(whole_day(params, "day", date)?, clock))
+}
+
+/// Whole days from the 1st of January 2000 to a date; the parameter `name` is its day.
+pub(super) fn whole_day(params: &Params<'_>, name: &str, [year, month, day]: [i64; 3]) -> Result<f64> {
     let next = if month == 12 { [year + 1, 1, 1] } else { [year, month + 1, 1] };
     let length = days_since_2000(next) - days_since_2000([year, month, 1]);
     if day as f64 > length {
         let expected = format!("a day of that month, from 1 to {length}");
-        return Err(params.complain("day", expected, day.to_string()));
+        return Err(params.complain(name, expected, day.to_string()));
     }
-    let days = days_since_2000(date) + universal / 24.0 - 0.5;
-    let [latitude, longitude] = [params.float("latitude")?, params.float("longitude")?];
-    Ok(local(days, universal, latitude.to_radians(), longitude))
+    Ok(days_since_2000([year, month, day]))
 }
 
 /// Whole days from the 1st of January 2000, in the Gregorian calendar. A year from March to February has its leap day last.

@@ -89,7 +89,11 @@ fn fog_in_a_closed_box() {
 #[test]
 fn flakes() {
     examine_all::<Everything>("fog of flakes", &build(&[FLAKES, INSIDE, ROOM, LAMP, BALL]), 300);
-    examine_all::<Everything>("waves of flakes", &build(&[OUTSIDE, WAVES_OF_FLAKES, GROUND, LAMP, SKY]), 1000);
+    examine_all::<Everything>(
+        "waves of flakes",
+        &build(&[OUTSIDE, WAVES_OF_FLAKES, GROUND, LAMP, SKY]),
+        1000,
+    );
     let strategies = Strategies { equiangular: true, ..Strategies::BDPT };
     let setup = build(&[FLAKES, INSIDE, ROOM, LAMP, BULB, POINT, BALL]);
     let along = examine::<Everything>("flakes, along", &setup, Options { strategies, ..ALL }, 300);
