@@ -140,6 +140,11 @@ impl Parameter {
         Self { unit, ..self }
     }
 
+    /// That must be given.
+    pub const fn required(self) -> Self {
+        Self { default: Default::Required, ..self }
+    }
+
     /// Of a plugin of Mitsuba's, but not in Mitsuba.
     pub const fn ours(self) -> Self {
         Self { ours: true, ..self }

@@ -30,6 +30,8 @@ fn beside(plugin: &str, name: &str) -> Value {
         ("irregular", "wavelengths") => json!({"values": "0.1, 0.2"}),
         ("polynomial", _) => json!({"x": "0.5, 0.1"}),
         ("gridvolume", "grid") => json!({"filename": "smoke.vdb"}),
+        // The sky of a whole year takes its time.
+        ("timed_sunsky", _) => json!({"sky_scale": 0}),
         _ => json!({}),
     }
 }
@@ -77,6 +79,7 @@ fn sample_of(tag: &str, plugin: &str) -> Value {
         ("phase", _) => json!({"type": "hg"}),
         ("texture", "bumpmap") => json!({"type": "bitmap", "filename": "tiles.png"}),
         ("texture", _) => json!({"type": "checkerboard"}),
+        ("volume", "sggx") => json!({"type": "gridvolume", "filename": "flakes.vol"}),
         ("volume", _) => json!({"type": "constvolume"}),
         ("integrator", _) => json!({"type": "path"}),
         _ => unreachable!("{tag}"),
@@ -91,10 +94,12 @@ fn samples(plugin: &str, row: &Parameter) -> Vec<Value> {
             let number = match row.name {
                 "eta" => 1.5,
                 "wavelength_max" => 900.0,
+                "window_end_time" => 12.0,
                 _ => middle,
             };
             let integer = matches!(row.kind, Kind::Integer(_));
-            vec![if integer { json!(range.low as i64) } else { json!(number) }]
+            let least = if row.name == "end_year" { 2026 } else { range.low as i64 };
+            vec![if integer { json!(least) } else { json!(number) }]
         }
         Kind::Boolean => vec![json!(true), json!(false)],
         Kind::Choice(words) => words.iter().map(|word| json!(word)).collect(),

@@ -129,6 +129,9 @@ impl Window {
                     * (light.sun_scale / (MOMENTS as f64 * solid_angle)) as f32;
             }
         }
+        if light.sky_scale == 0.0 {
+            return Image { width: MAP[0], height: MAP[1], pixels };
+        }
         let sky = mean_sky(&suns, light);
         for (index, pixel) in pixels.iter_mut().enumerate().take(ROWS * MAP[0]) {
             let towards = TO_MAP.transpose() * of_pixel(index % MAP[0], index / MAP[0], MAP);
@@ -182,11 +185,12 @@ fn mean_sky(suns: &[[f64; AZIMUTHS]], light: &Light) -> Vec<[Spectrum; AZIMUTHS]
         let sky = Sky::new(light.turbidity, light.albedo, sine.atan2(cosine) as f32);
         for (row, sum) in mean.iter_mut().enumerate() {
             let (far, high) = (PI * row as f64 / (MAP[1] - 1) as f64).sin_cos();
-            let from_sun: [Spectrum; AZIMUTHS] = std::array::from_fn(|k| {
+            let half: [Spectrum; AZIMUTHS / 2 + 1] = std::array::from_fn(|k| {
                 let turn = (TAU * k as f64 / AZIMUTHS as f64).cos();
                 let gamma = (sine * high + cosine * far * turn).clamp(-1.0, 1.0).acos();
                 sky.radiance(high.max(0.0) as f32, gamma as f32)
             });
+            let from_sun: [Spectrum; AZIMUTHS] = std::array::from_fn(|k| half[k.min(AZIMUTHS - k)]);
             for (k, share) in &shares {
                 let (first, last) = sum.split_at_mut(*k);
                 let beside = last.iter_mut().chain(first).zip(&from_sun);
