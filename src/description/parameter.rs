@@ -142,7 +142,7 @@ impl Parameter {
 
     /// That must be given.
     pub const fn required(self) -> Self {
-        Self { default: Default::Required, ..self }
+        Self { default: Required, ..self }
     }
 
     /// Of a plugin of Mitsuba's, but not in Mitsuba.

@@ -4,6 +4,7 @@ mod description;
 pub mod distance;
 mod emission;
 mod extinction;
+mod flakes;
 mod heterogeneous;
 mod homogeneous;
 mod mixture;
@@ -127,12 +128,6 @@ impl MediumInterval {
     fn length(&self) -> f32 {
         self.segment.length + self.skipped
     }
-
-    /// The same, `by` times as long in units that are so many times as short.
-    #[inline]
-    fn stretched(&self, by: f32) -> Self {
-        Self { segment: self.segment.stretched(by), skipped: self.skipped * by }
-    }
 }
 
 /// What light that crosses an interval beside forced collisions has left (see [`Medium::unforced`]).
@@ -208,46 +203,6 @@ impl Medium {
         match &self.coefficients {
             Coefficients::Heterogeneous(varying) => Some(varying),
             Coefficients::Homogeneous | Coefficients::Mixture(_) => None,
-        }
-    }
-
-    #[inline(always)]
-    fn has_flakes<M: MediaProfile>(&self) -> bool {
-        M::FLAKES && matches!(self.phase, Phase::Sggx(_))
-    }
-
-    /// The factor of extinction for light that flies in unit `direction`, or back: the area that flakes show; else 1.
-    #[inline(always)]
-    pub fn area<M: MediaProfile>(&self, direction: Vec3) -> f32 {
-        match &self.phase {
-            Phase::Sggx(flakes) if M::FLAKES => flakes.area(direction),
-            _ => 1.0,
-        }
-    }
-
-    /// Seen so, extinction along `interval` is as of flakes that show a unit area.
-    #[inline(always)]
-    fn stretched<M: MediaProfile>(&self, interval: &MediumInterval) -> MediumInterval {
-        match &self.phase {
-            Phase::Sggx(flakes) if M::FLAKES => interval.stretched(flakes.area(interval.segment.direction)),
-            _ => *interval,
-        }
-    }
-
-    /// What was sampled in the `stretched` interval, back in metres of `interval`.
-    #[inline(always)]
-    fn shrunk<M: MediaProfile>(
-        &self,
-        interval: &MediumInterval,
-        sample: DistanceSample<M::Channels>,
-    ) -> DistanceSample<M::Channels> {
-        match &self.phase {
-            Phase::Sggx(flakes) if M::FLAKES => {
-                let RaySegment { direction, length, .. } = interval.segment;
-                let collision = sample.collision.map(|t| (t / flakes.area(direction)).min(length));
-                DistanceSample { collision, ..sample }
-            }
-            _ => sample,
         }
     }
 
@@ -448,10 +403,7 @@ impl Medium {
 
     /// Optical depth for a picture that need not be exact but must not be noisy.
     pub fn quick_depth(&self, segment: &RaySegment) -> Spectrum {
-        let segment = &match &self.phase {
-            Phase::Sggx(flakes) => segment.stretched(flakes.area(segment.direction)),
-            _ => *segment,
-        };
+        let segment = &self.stretched_segment(segment);
         match self.any_model() {
             Model::Homogeneous(bound) => bound.optical_depth(segment.length),
             Model::Heterogeneous(varying) => varying.quick_depth(segment),

@@ -1,0 +1,67 @@
+//! Extinction that depends on the direction of flight: along a ray it is that of flakes of unit area, times the area that
+//! they show. A flight is the same in a ray whose metres are as many times as short, and only what was compiled for flakes
+//! asks for them.
+
+use super::{DistanceSample, MediaProfile, Medium, MediumInterval};
+use crate::{
+    math::{RaySegment, Vec3},
+    phase::Phase,
+};
+
+impl MediumInterval {
+    /// The same, `by` times as long in units that are so many times as short.
+    #[inline]
+    fn stretched(&self, by: f32) -> Self {
+        Self { segment: self.segment.stretched(by), skipped: self.skipped * by }
+    }
+}
+
+impl Medium {
+    #[inline(always)]
+    pub(super) fn has_flakes<M: MediaProfile>(&self) -> bool {
+        M::FLAKES && matches!(self.phase, Phase::Sggx(_))
+    }
+
+    /// The factor of extinction for light that flies in unit `direction`, or back: the area that flakes show; else 1.
+    #[inline(always)]
+    pub fn area<M: MediaProfile>(&self, direction: Vec3) -> f32 {
+        match &self.phase {
+            Phase::Sggx(flakes) if M::FLAKES => flakes.area(direction),
+            _ => 1.0,
+        }
+    }
+
+    /// Seen so, extinction along `interval` is as of flakes that show a unit area.
+    #[inline(always)]
+    pub(super) fn stretched<M: MediaProfile>(&self, interval: &MediumInterval) -> MediumInterval {
+        match &self.phase {
+            Phase::Sggx(flakes) if M::FLAKES => interval.stretched(flakes.area(interval.segment.direction)),
+            _ => *interval,
+        }
+    }
+
+    /// What was sampled in the `stretched` interval, back in metres of `interval`.
+    #[inline(always)]
+    pub(super) fn shrunk<M: MediaProfile>(
+        &self,
+        interval: &MediumInterval,
+        sample: DistanceSample<M::Channels>,
+    ) -> DistanceSample<M::Channels> {
+        match &self.phase {
+            Phase::Sggx(flakes) if M::FLAKES => {
+                let RaySegment { direction, length, .. } = interval.segment;
+                let collision = sample.collision.map(|t| (t / flakes.area(direction)).min(length));
+                DistanceSample { collision, ..sample }
+            }
+            _ => sample,
+        }
+    }
+
+    /// A segment seen so, whatever was compiled.
+    pub(super) fn stretched_segment(&self, segment: &RaySegment) -> RaySegment {
+        match &self.phase {
+            Phase::Sggx(flakes) => segment.stretched(flakes.area(segment.direction)),
+            _ => *segment,
+        }
+    }
+}
