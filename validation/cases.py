@@ -178,6 +178,7 @@ CASES = (
     Case("thin_pane.json", EYE),
     Case("two_sided_screen.json", EYE),
     Case("vacuum_room.json"),
+    Case("sensor_batch.json"),
     Case("sensor_perspective.json"),
     Case("sensor_thinlens.json"),
     Case("sensor_thinlens_in_fog.json", EYE),

@@ -34,6 +34,8 @@ pub struct Scene {
     pub definitions: Vec<(String, String)>,
 
     /// Sensor to see the scene by, where it has several: its id, or its number from 0 in file order [default: the first]
+    ///
+    /// `tyndall render --sensor all` renders one image after the other: NAME_SENSOR.exr and so on.
     #[arg(long, value_name = "SENSOR")]
     pub sensor: Option<String>,
 
@@ -54,7 +56,7 @@ impl Scene {
         let root = format::read(&self.file, &self.definitions)?;
         match &self.sensor {
             None => Ok(root),
-            Some(sensor) => sensors::only(root, sensor),
+            Some(sensor) => sensors::only(&root, sensor),
         }
     }
 

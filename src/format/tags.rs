@@ -130,7 +130,7 @@ pub(crate) const MITSUBA: [(&str, &[&str]); 12] = [
 pub(crate) const INSIDE: [(&str, &[&str]); 13] = [
     ("scene", &["integrator", "sensor", "shape", "bsdf", "texture", "emitter", "medium", "phase", "volume"]),
     ("integrator", &["integrator"]),
-    ("sensor", &["film", "sampler", "medium", "texture"]),
+    ("sensor", &["sensor", "film", "sampler", "medium", "texture"]),
     ("film", &["rfilter", "texture"]),
     ("sampler", &[]),
     ("rfilter", &[]),
@@ -146,7 +146,7 @@ pub(crate) const INSIDE: [(&str, &[&str]); 13] = [
 /// Plugins that Tyndall itself builds under `tag`, with their tables.
 pub(crate) fn tables(tag: &str) -> Vec<(&'static str, &'static Table)> {
     match tag {
-        "sensor" => sensor::ROWS.tables().collect(),
+        "sensor" => sensor::ROWS.tables().chain([(sensor::BATCH, &sensor::BATCH_TABLE)]).collect(),
         "film" => film::ROWS.tables().collect(),
         "integrator" => integrator::ROWS.tables().collect(),
         "sampler" => sampler::ROWS.tables().collect(),

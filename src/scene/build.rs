@@ -9,7 +9,7 @@ mod shapes;
 mod view;
 
 use super::{
-    Scene, Surface,
+    Scene, Surface, batch,
     contact::{Apart, Nature},
     keyframes,
     rebuild::{Before, Parts},
@@ -100,6 +100,7 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
 /// since is taken from there.
 pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) -> Result<Setup> {
     plugins::check(root)?;
+    let root = &batch::expand(root)?;
     let root = &keyframes::resolve(root);
     let (root, smoke) = smoke::expand(root)?;
     let mut library = Library::new(&root)?;

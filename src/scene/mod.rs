@@ -1,6 +1,7 @@
 //! A scene ready to render, and how it is made: read a description, build it, index it.
 
 pub mod accel;
+mod batch;
 pub mod build;
 pub mod contact;
 pub mod keyframes;

@@ -1,5 +1,6 @@
 //! Which of a scene's sensors is rendered: the first, unless another is chosen.
 
+use super::batch;
 use crate::{
     description::{Library, Object, Value, params::Child, suggest},
     error::{Error, Result},
@@ -7,7 +8,8 @@ use crate::{
 };
 
 /// `root` with the one sensor that `wanted` names, by its id or by its number from 0 in file order.
-pub fn only(mut root: Object, wanted: &str) -> Result<Object> {
+pub fn only(root: &Object, wanted: &str) -> Result<Object> {
+    let mut root = batch::expand(root)?.into_owned();
     let ids: Vec<Option<String>> = sensors(&root).map(|sensor| sensor.id.clone()).collect();
     let by_id = ids.iter().position(|id| id.as_deref() == Some(wanted));
     let by_number = || wanted.parse().ok().filter(|number| *number < ids.len());
@@ -19,6 +21,13 @@ pub fn only(mut root: Object, wanted: &str) -> Result<Object> {
         number == chosen + 1
     });
     Ok(root)
+}
+
+/// What `--sensor` calls each sensor of `root`: its id, or its number.
+pub fn names(root: &Object) -> Result<Vec<String>> {
+    let root = batch::expand(root)?;
+    let name = |(number, sensor): (usize, &Object)| sensor.id.clone().unwrap_or_else(|| number.to_string());
+    Ok(sensors(&root).enumerate().map(name).collect())
 }
 
 /// Says which of several `sensors` is rendered.

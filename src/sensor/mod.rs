@@ -7,6 +7,7 @@
 //! position. What remains of either is one density: of directions per film area of a pixel, or, for parallel
 //! rays, of positions.
 
+mod batch;
 mod lens;
 mod orthographic;
 mod perspective;
@@ -14,6 +15,7 @@ mod perspective;
 mod tests;
 mod thinlens;
 
+pub use batch::{BATCH, BATCH_TABLE};
 use lens::LENS;
 pub(crate) use lens::{FIELD_OF_VIEW, half_width};
 pub use orthographic::Orthographic;

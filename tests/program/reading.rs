@@ -501,6 +501,45 @@ fn one_of_several_sensors_is_rendered() {
     sandbox.run(&format!("{kept} --spp 2 --resume --sensor 1")).refuses(&["sensor = \"1\""]);
 }
 
+/// Each has its part of the batch's film, whatever its own.
+#[test]
+fn all_sensors_of_a_batch_are_rendered() {
+    let batch = json!({"type": "batch", "front": camera([0.0, 0.0, 4.0], [0.0; 3], 9),
+        "away": camera([0.0, 0.0, 4.0], [0.0, 0.0, 9.0], 9),
+        "film": {"type": "hdrfilm", "width": 6, "height": 2, "rfilter": {"type": "box"}},
+        "sampler": {"type": "independent", "sample_count": 1}});
+    let sandbox = Sandbox::with_scene(&scene(&[("both", batch), ("lamp", lamp_ball([0.0; 3], 3.0, 2.0))]));
+    sandbox.run("render scene.json --sensor all -o a.exr").ends(0);
+    for (file, light) in [("a_front.exr", 2.0), ("a_away.exr", 0.0)] {
+        assert_eq!(sandbox.channels(file)["R"], [light; 6], "{file}");
+    }
+    sandbox.run("render scene.json --sensor all --report r.json").refuses(&["--report", "one sensor"]);
+    sandbox.run("render scene.json --sensor away").ends(0);
+    assert_eq!(sandbox.channels("scene.exr")["R"], [0.0; 6]);
+    sandbox.run("render scene.json --sensor all -o /dev/null").refuses(&["device", "one sensor"]);
+}
+
+/// Whatever is in their ids.
+#[test]
+fn images_of_several_sensors_do_not_replace_each_other() {
+    let named = |ids: [&str; 2]| {
+        let cameras = ids.map(|id| {
+            let mut camera = camera([0.0, 0.0, 4.0], [0.0; 3], 2);
+            camera["id"] = id.into();
+            camera
+        });
+        let [a, b] = cameras;
+        scene(&[("a", a), ("b", b), ("lamp", lamp_ball([0.0; 3], 3.0, 2.0))])
+    };
+    let sandbox = Sandbox::with_scene(&named(["x.1", "x/../2"]));
+    sandbox.run("render scene.json --sensor all --spp 1").ends(0);
+    for file in ["scene_x_1.exr", "scene_x____2.exr"] {
+        assert_eq!(sandbox.channels(file)["R"], [2.0; 4], "{file}");
+    }
+    let sandbox = Sandbox::with_scene(&named(["x.1", "X_1"]));
+    sandbox.run("render scene.json --sensor all").refuses(&["a second one for scene_X_1", "another id"]);
+}
+
 /// Mitsuba 3 renames the parameters of scenes before version 2 only: in later ones such names are mistakes.
 #[test]
 fn versions_from_2_on_have_no_camel_case() {

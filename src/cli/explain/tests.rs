@@ -70,6 +70,7 @@ fn sample_of(tag: &str, plugin: &str) -> Value {
         ("volume", "polynomial") => json!({"type": "term", "powers": [1, 0, 0]}),
         ("shape", "instance") => json!({"type": "shapegroup", "s": {"type": "sphere"}}),
         ("shape", _) => json!({"type": "sphere"}),
+        ("sensor", _) => json!({"type": "perspective"}),
         ("film", _) => json!({"type": "hdrfilm"}),
         ("sampler", _) => json!({"type": "independent"}),
         ("rfilter", _) => json!({"type": "box"}),

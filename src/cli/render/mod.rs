@@ -3,6 +3,7 @@
 mod animation;
 pub(super) mod arguments;
 mod checkpoint;
+mod every;
 mod features;
 mod files;
 pub(super) mod precision;
@@ -49,6 +50,21 @@ use viewer::Viewer;
 
 /// Runs the command.
 pub(super) fn run(arguments: &Render) -> Result<()> {
+    if arguments.scene.sensor.as_deref() != Some(every::ALL) {
+        return run_one(arguments);
+    }
+    for one in every::sensor(arguments)? {
+        run_one(&one)?;
+        if let Some((name, _)) = interrupt::signal() {
+            let sensor = one.scene.sensor.unwrap_or_default();
+            complain(&format!("{name} at sensor {sensor}: those behind it are not rendered"));
+            break;
+        }
+    }
+    Ok(())
+}
+
+fn run_one(arguments: &Render) -> Result<()> {
     let started = Instant::now();
     if arguments.denoise {
         denoise::check()?;

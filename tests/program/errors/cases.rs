@@ -499,5 +499,7 @@ pub(super) fn all() -> Vec<Case> {
         Case::xml("polarised light", r#"<bsdf type="retarder"/>"#),
         Case::xml("Stokes vectors", r#"<integrator type="stokes"/>"#),
         Case::json("direct light with media", r#""integrator": {"type": "direct", "bsdf_samples": 2}, "a": {"type": "cube", "bsdf": {"type": "null"}, "interior": {"type": "homogeneous"}}, "sky": {"type": "constant"}"#).warned(),
+        Case::of("a batch without sensors", "scene.json", r#"{"type": "scene", "b": {"type": "batch"}, "sky": {"type": "constant"}}"#),
+        Case::of("a batch whose film has no equal parts", "scene.json", r#"{"type": "scene", "b": {"type": "batch", "x": {"type": "perspective"}, "y": {"type": "perspective"}, "f": {"type": "hdrfilm", "width": 63}}, "sky": {"type": "constant"}}"#),
     ]
 }
