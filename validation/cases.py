@@ -9,8 +9,8 @@ from validation.places import CROSSCHECK
 ALL = ("pt", "lt", "bdpt")
 EYE = ("pt", "bdpt")
 """Light tracing alone has no finite variance where the camera stands in a medium (a vertex next to the lens counts
-1 / distance^2), so no test can hold it to anything; and where the camera sees a smooth dielectric or mirror, no light
-walk reaches the lens. Through rough dielectric it has rare fireflies, too rare for batches to know their variance."""
+1 / distance^2), so no test can hold it to anything; and where the camera sees a smooth dielectric or mirror, or a
+radiancemeter its one ray, no light walk reaches the lens. Through rough dielectric it has rare fireflies, too rare for batches to know their variance."""
 LIGHT = ("lt", "bdpt")
 """Beams of parallel rays (`directionalarea`): no eye path can hit them nor sample a point that shines towards it, so
 path tracing alone sees none of their light; Mitsuba renders them by its particle tracer."""
@@ -184,6 +184,10 @@ CASES = (
     Case("sensor_thinlens_in_fog.json", EYE),
     Case("sensor_orthographic.json"),
     Case("sensor_orthographic_in_fog.json"),
+    Case("sensor_radiancemeter.json", EYE, effort=100),
+    Case("sensor_irradiancemeter.json", effort=100),
+    Case("sensor_distant.json", effort=100),
+    Case("sensor_distant_target.json", effort=100),
     Case("film_crop.json"),
     *filters(),
     Case("shapes_surfaces.json"),

@@ -130,7 +130,7 @@ pub(crate) const MITSUBA: [(&str, &[&str]); 12] = [
 pub(crate) const INSIDE: [(&str, &[&str]); 13] = [
     ("scene", &["integrator", "sensor", "shape", "bsdf", "texture", "emitter", "medium", "phase", "volume"]),
     ("integrator", &["integrator"]),
-    ("sensor", &["sensor", "film", "sampler", "medium", "texture"]),
+    ("sensor", &["sensor", "film", "sampler", "medium", "texture", "shape"]),
     ("film", &["rfilter", "texture"]),
     ("sampler", &[]),
     ("rfilter", &[]),

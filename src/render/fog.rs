@@ -79,7 +79,10 @@ impl<'a> Preview<'a> {
         let show = |pixel| {
             let mut start = compiled.camera_start(pass, pixel);
             let ray = self.scene.sensor.ray(start.position, start.aperture).ray;
-            (pixel as u32, self.radiance(ray, &mut start.stream) * start.weight)
+            (
+                pixel as u32,
+                self.radiance(ray, &mut start.stream) * (start.weight * self.scene.sensor.response()),
+            )
         };
         Outcome::of_parts(pixels.map(show).collect(), Vec::new(), Vec::new())
     }

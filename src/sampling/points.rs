@@ -37,6 +37,11 @@ impl Point {
         Self { left: DIMENSIONS, index, key, four: [0; 4] }
     }
 
+    /// What is left of a point: these two coordinates, in units of 2^-32.
+    pub(super) fn of(last: [u32; 2]) -> Self {
+        Self { left: 2, four: [0, 0, last[0], last[1]], ..Self::NONE }
+    }
+
     /// True when all coordinates have been drawn.
     #[inline(always)]
     pub(super) fn is_spent(&self) -> bool {

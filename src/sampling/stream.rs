@@ -42,6 +42,13 @@ impl Stream {
         Self { point, ..Self::new(seed, index, sample, purpose) }
     }
 
+    /// The stream whose first two numbers are these, both in [0, 1); those that come then depend on them alone.
+    pub fn of(first: Vec2) -> Self {
+        let bits = first.to_array().map(|x| (f64::from(x) * (1u64 << 32) as f64) as u32);
+        let [index, sample] = bits.map(u64::from);
+        Self { point: Point::of(bits), ..Self::new(0, index, sample, Purpose::Camera) }
+    }
+
     /// 64 random bits, the first of which may be a coordinate's.
     #[inline]
     fn bits(&mut self) -> u64 {

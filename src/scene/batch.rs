@@ -1,35 +1,71 @@
-//! `batch`: before anything is built, it is replaced by the sensors in it, each with its part of the film.
+//! Sensors inside of something are taken out before anything is built: those of a `batch`, each with its part of the film,
+//! and those on a shape, each with a reference to it.
 
 use crate::{
     description::{Library, Object, Params, Property, Value, params::Child},
     error::{Error, Result},
-    sensor::{self, BATCH, BATCH_TABLE},
+    sensor::{self, BATCH, BATCH_TABLE, ON_SHAPE},
     settings::{film, only_one, sampler},
+    shape,
 };
 use std::borrow::Cow;
 
-/// `root` with the sensors of a `batch` in its place.
+/// `root` with its sensors beside each other.
 pub(super) fn expand(root: &Object) -> Result<Cow<'_, Object>> {
-    if !root.properties.iter().any(|property| batch_in(property).is_some()) {
+    let is_around = |child: &&Object| child.plugin == BATCH || has_meter(child);
+    let around = |property| object_in(property).filter(is_around);
+    if !root.properties.iter().any(|property| around(property).is_some()) {
         return Ok(Cow::Borrowed(root));
     }
     let library = Library::new(root)?;
     let mut properties = Vec::with_capacity(root.properties.len());
     for property in &root.properties {
-        match batch_in(property) {
-            Some(batch) => properties.extend(sensors(batch, &library)?),
+        match around(property) {
+            Some(batch) if batch.plugin == BATCH => properties.extend(sensors(batch, &library)?),
+            Some(shape) => properties.extend(taken_off(shape, property, &library)?),
             None => properties.push(property.clone()),
         }
     }
     Ok(Cow::Owned(Object { properties, ..root.clone() }))
 }
 
-fn batch_in(property: &Property) -> Option<&Object> {
-    if let Value::Object(child) = &property.value {
-        Some(child).filter(|child| child.plugin == BATCH)
-    } else {
-        None
-    }
+fn object_in(property: &Property) -> Option<&Object> {
+    if let Value::Object(child) = &property.value { Some(child) } else { None }
+}
+
+/// True of a shape on which something is measured.
+fn has_meter(object: &Object) -> bool {
+    let mut children = object.properties.iter().filter_map(object_in);
+    shape::ROWS.has(object) && children.any(|child| child.plugin == ON_SHAPE)
+}
+
+/// `shape`, which is `given` so, and then the sensors on it.
+fn taken_off(shape: &Object, given: &Property, library: &Library) -> Result<Vec<Property>> {
+    let (params, _) = shape::ROWS.read(shape, library)?;
+    let on = |child: &Child<'_>| child.object.plugin == ON_SHAPE;
+    let sensors = params.children("sensor", on)?;
+    let id = shape.id.clone().unwrap_or_else(|| format!("{} at {}", shape.plugin, shape.location));
+    let mut bare = Object { id: Some(id.clone()), ..shape.clone() };
+    bare.properties.retain(|property| object_in(property).is_none_or(|child| child.plugin != ON_SHAPE));
+    let of = |child: &Child<'_>| {
+        let location = child.location.clone();
+        let mut sensor = child.object.clone();
+        sensor.properties.push(Property {
+            name: "shape".into(),
+            value: Value::Reference(id.clone()),
+            location,
+        });
+        property(child.name, named(child, sensor, library), shape)
+    };
+    let sensors = sensors.iter().map(of);
+    Ok(std::iter::once(Property { value: Value::Object(bare), ..given.clone() }).chain(sensors).collect())
+}
+
+/// `sensor`, made of `child`, with an id to choose it by.
+fn named(child: &Child<'_>, sensor: Object, library: &Library) -> Object {
+    let name = Some(child.name).filter(|name| !name.is_empty() && library.find(name).is_none());
+    let id = sensor.id.clone().or(name.map(str::to_owned));
+    Object { id, ..sensor }
 }
 
 /// The sensors of `batch`, each with the film and the sampler that are its own here.
@@ -61,10 +97,8 @@ fn sensors(batch: &Object, library: &Library) -> Result<Vec<Property>> {
     };
     let with_film = |child: &Child<'_>| {
         let kept = child.object.properties.iter().filter(own).cloned();
-        let name = Some(child.name).filter(|name| !name.is_empty() && library.find(name).is_none());
-        let id = child.object.id.clone().or(name.map(str::to_owned));
-        let object = Object { id, properties: kept.chain(shared.clone()).collect(), ..child.object.clone() };
-        property(child.name, object, batch)
+        let object = Object { properties: kept.chain(shared.clone()).collect(), ..child.object.clone() };
+        property(child.name, named(child, object, library), batch)
     };
     Ok(sensors.iter().map(with_film).collect())
 }

@@ -8,7 +8,9 @@
 //! rays, of positions.
 
 mod batch;
+mod irradiance;
 mod lens;
+mod meter;
 mod orthographic;
 mod perspective;
 #[cfg(test)]
@@ -16,6 +18,7 @@ mod tests;
 mod thinlens;
 
 pub use batch::{BATCH, BATCH_TABLE};
+use irradiance::Irradiance;
 use lens::LENS;
 pub(crate) use lens::{FIELD_OF_VIEW, half_width};
 pub use orthographic::Orthographic;
@@ -23,12 +26,13 @@ pub use perspective::Perspective;
 pub use thinlens::ThinLens;
 
 use crate::{
-    description::{Library, Object, Params, Plugin, Registry, Table, parameter::Parameter, rows},
+    description::{Library, Location, Object, Params, Plugin, Registry, Table, parameter::Parameter, rows},
     error::Result,
     math::{DVec3, Vec2, Vec3},
     sampling::Stream,
-    shape::Ray,
+    shape::{self, Ray, Shape},
 };
+use std::{collections::HashMap, f32::consts::PI};
 
 /// Any sensor.
 #[derive(Clone, Debug)]
@@ -39,6 +43,8 @@ pub enum Sensor {
     ThinLens(ThinLens),
     /// Parallel rays.
     Orthographic(Orthographic),
+    /// A shape, on which all light counts.
+    Irradiance(Box<Irradiance>),
 }
 
 /// The image that a sensor makes.
@@ -76,10 +82,22 @@ pub struct Projection {
     pub pdf: f32,
 }
 
+/// What a sensor is built in.
+#[derive(Clone, Copy)]
+pub struct Site<'a> {
+    /// The point of the file's coordinates that becomes the origin (m).
+    pub recentre: DVec3,
+    /// The image that it is to make.
+    pub crop: Crop,
+    /// All shapes of the scene,
+    pub shapes: &'a [Shape],
+    /// and the number of each by where it is described, unless it is in a group.
+    pub places: &'a HashMap<Location, usize>,
+}
+
 /// Reads the parameters of one kind of sensor (film, sampler and medium remain for the scene to read, which calls
-/// `finish`); the point `recentre` of the
-/// file's coordinates becomes the origin.
-pub type BuildSensor = fn(&Params<'_>, DVec3, Crop) -> Result<Sensor>;
+/// `finish`).
+pub type BuildSensor = fn(&Params<'_>, &Site<'_>) -> Result<Sensor>;
 
 /// All sensors: Mitsuba's plugin name and the builder.
 pub const ROWS: Registry<Plugin<BuildSensor>> = Registry::new(
@@ -87,18 +105,31 @@ pub const ROWS: Registry<Plugin<BuildSensor>> = Registry::new(
     &[
         (
             "perspective",
-            plugin(Perspective::TABLE, |p, at, crop| {
-                Perspective::build(p, at, crop).map(Sensor::Perspective)
+            plugin(Perspective::TABLE, |p, site| {
+                Perspective::build(p, site.recentre, site.crop).map(Sensor::Perspective)
             }),
         ),
         (
             "thinlens",
-            plugin(ThinLens::TABLE, |p, at, crop| ThinLens::build(p, at, crop).map(Sensor::ThinLens)),
+            plugin(ThinLens::TABLE, |p, site| {
+                ThinLens::build(p, site.recentre, site.crop).map(Sensor::ThinLens)
+            }),
         ),
         (
             "orthographic",
-            plugin(Orthographic::TABLE, |p, at, crop| {
-                Orthographic::build(p, at, crop).map(Sensor::Orthographic)
+            plugin(Orthographic::TABLE, |p, site| {
+                Orthographic::build(p, site.recentre, site.crop).map(Sensor::Orthographic)
+            }),
+        ),
+        (
+            "radiancemeter",
+            plugin(meter::RADIANCEMETER, |p, site| meter::radiancemeter(p, site).map(Sensor::Orthographic)),
+        ),
+        ("distant", plugin(meter::DISTANT, |p, site| meter::distant(p, site).map(Sensor::Orthographic))),
+        (
+            ON_SHAPE,
+            plugin(Irradiance::TABLE, |p, site| {
+                Irradiance::build(p, site).map(|sensor| Sensor::Irradiance(Box::new(sensor)))
             }),
         ),
     ],
@@ -108,10 +139,14 @@ const fn plugin(table: Table, build: BuildSensor) -> Plugin<BuildSensor> {
     Plugin { table, build }
 }
 
-/// What all sensors have.
-const COMMON: &[Parameter] = rows! {
+/// What cameras have.
+const CLIP: &[Parameter] = rows! {
     number("near_clip", "m", within(0.0, MAX), Is(1e-2), "Nothing nearer than this along the axis is seen, fog included."),
     number("far_clip", "m", above(0.0, MAX), Is(1e4), "Nothing farther than this along the axis is seen; above `near_clip`."),
+};
+
+/// What all sensors have.
+const ALL: &[Parameter] = rows! {
     nested("film", Optional, "The image; default: an `hdrfilm`."),
     nested("sampler", Optional, "The number of samples per pixel."),
     nested("medium", Optional, "The medium around the camera; default: found from the boundaries."),
@@ -119,9 +154,25 @@ const COMMON: &[Parameter] = rows! {
     ignored("shutter_close", "no motion blur"),
 };
 
-/// The sensor's position in the file's coordinates.
+/// The sensor's position in the file's coordinates; of one on a shape, that of the shape.
 pub fn viewpoint(object: &Object, library: &Library) -> Result<DVec3> {
-    Ok(ROWS.read(object, library)?.0.transform("to_world")?.transform_point3(DVec3::ZERO))
+    let (params, _) = ROWS.read(object, library)?;
+    let params = match object.plugin.as_str() {
+        ON_SHAPE => match params.child("shape")? {
+            Some(child) if shape::ROWS.has(child.object) => shape::ROWS.read(child.object, library)?.0,
+            _ => return Ok(DVec3::ZERO),
+        },
+        _ => params,
+    };
+    Ok(params.transform("to_world")?.transform_point3(DVec3::ZERO))
+}
+
+/// The plugin of the sensor that goes inside a shape.
+pub const ON_SHAPE: &str = "irradiancemeter";
+
+/// True of a plugin whose film has one pixel.
+pub fn is_meter(plugin: &str) -> bool {
+    [ON_SHAPE, "radiancemeter", "distant"].contains(&plugin)
 }
 
 impl Sensor {
@@ -131,6 +182,7 @@ impl Sensor {
         match self {
             Self::ThinLens(lens) => lens.sample_aperture(stream),
             Self::Perspective(_) | Self::Orthographic(_) => Vec2::ZERO,
+            Self::Irradiance(_) => Irradiance::sample_aperture(stream),
         }
     }
 
@@ -141,6 +193,7 @@ impl Sensor {
             Self::Perspective(sensor) => sensor.ray(film),
             Self::ThinLens(sensor) => sensor.ray(film, aperture),
             Self::Orthographic(sensor) => sensor.ray(film),
+            Self::Irradiance(sensor) => sensor.ray(film, aperture),
         }
     }
 
@@ -151,6 +204,7 @@ impl Sensor {
             Self::Perspective(sensor) => sensor.project(point),
             Self::ThinLens(sensor) => sensor.project(point, aperture),
             Self::Orthographic(sensor) => sensor.project(point),
+            Self::Irradiance(sensor) => sensor.project(point, aperture),
         }
     }
 
@@ -161,6 +215,7 @@ impl Sensor {
             Self::Perspective(sensor) => sensor.project_direction(direction),
             Self::ThinLens(sensor) => sensor.project_direction(direction, aperture),
             Self::Orthographic(_) => None,
+            Self::Irradiance(sensor) => sensor.project_direction(direction, aperture),
         }
     }
 
@@ -170,12 +225,37 @@ impl Sensor {
         matches!(self, Self::Orthographic(_))
     }
 
+    /// True if light subpaths can be connected to it.
+    #[inline(always)]
+    pub fn is_connectible(&self) -> bool {
+        if let Self::Orthographic(sensor) = self { sensor.is_connectible() } else { true }
+    }
+
+    /// What it measures of an even radiance of 1: of irradiance pi.
+    #[inline(always)]
+    pub fn response(&self) -> f32 {
+        if let Self::Irradiance(_) = self { PI } else { 1.0 }
+    }
+
+    /// The number of the shape that it is on.
+    pub fn shape(&self) -> Option<u32> {
+        if let Self::Irradiance(sensor) = self { Some(sensor.index as u32) } else { None }
+    }
+
+    /// Takes the shape that it is on as it now is among those of the scene.
+    pub fn settle(&mut self, shapes: &[Shape]) {
+        if let Self::Irradiance(sensor) = self {
+            sensor.settle(shapes);
+        }
+    }
+
     /// The centre of the aperture.
     pub fn position(&self) -> Vec3 {
         match self {
             Self::Perspective(sensor) => sensor.position(),
             Self::ThinLens(sensor) => sensor.position(),
             Self::Orthographic(sensor) => sensor.position(),
+            Self::Irradiance(sensor) => sensor.position(),
         }
     }
 
@@ -184,7 +264,8 @@ impl Sensor {
         match self {
             Self::Perspective(_) => "perspective",
             Self::ThinLens(_) => "thinlens",
-            Self::Orthographic(_) => "orthographic",
+            Self::Orthographic(sensor) => sensor.name,
+            Self::Irradiance(_) => ON_SHAPE,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The pinhole camera: Mitsuba's `perspective`.
 
-use super::{COMMON, Crop, FIELD_OF_VIEW, LENS, Projection, SensorRay, lens::Lens};
+use super::{ALL, CLIP, Crop, FIELD_OF_VIEW, LENS, Projection, SensorRay, lens::Lens};
 use crate::{
     description::{Params, Table, table},
     error::Result,
@@ -15,7 +15,7 @@ impl Perspective {
     pub(super) const TABLE: Table = table! {
         "A pinhole camera that looks along +z.";
         ignored("focus_distance", "a pinhole has all in focus (a thinlens has not)");
-        LENS, FIELD_OF_VIEW, COMMON
+        LENS, FIELD_OF_VIEW, CLIP, ALL
     };
 
     pub(super) fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Self> {

@@ -3,7 +3,7 @@
 use super::*;
 use crate::{
     description::{TransformStep, Value},
-    math::{vec2, vec3},
+    math::{DMat4, vec2, vec3},
     testing::object,
 };
 
@@ -12,9 +12,24 @@ const CROP: Crop = Crop { film: [200, 100], offset: [30, 10] };
 fn built(plugin: &str, properties: &[(&str, Value)], crop: Crop) -> Result<Sensor> {
     let (object, library) = (object(plugin, properties), Library::default());
     let (params, build) = ROWS.read(&object, &library)?;
-    let sensor = build(&params, DVec3::ZERO, crop)?;
+    let site = Site { recentre: DVec3::ZERO, crop, shapes: &[], places: &HashMap::new() };
+    let sensor = build(&params, &site)?;
     params.finish()?;
     Ok(sensor)
+}
+
+/// Sensors of one pixel: parallel rays on a disc, and what is seen on shapes.
+fn meters() -> Vec<Sensor> {
+    let vector = |x| Value::Vector(x);
+    let turn = vec![TransformStep::Rotate { axis: [1.0, 2.0, -0.5], angle: 70.0 }];
+    let on = |plugin: &str| {
+        let (object, library) =
+            (object(plugin, &[("to_world", Value::Transform(turn.clone()))]), Library::default());
+        let (params, build) = shape::ROWS.read(&object, &library).unwrap();
+        Sensor::Irradiance(Box::new(Irradiance::on(build(&params, DMat4::IDENTITY).unwrap(), 0)))
+    };
+    let distant = built("distant", &[("direction", vector([1.0, 2.0, -0.5]))], CROP).unwrap();
+    vec![distant, on("rectangle"), on("sphere"), on("disk")]
 }
 
 fn examples() -> Vec<Sensor> {
@@ -76,6 +91,51 @@ fn densities_are_those_of_the_projection() {
             assert!((area * f64::from(pdf) - 1.0).abs() < 2e-3, "{} {film}", sensor.name());
         }
     }
+}
+
+#[test]
+fn a_point_on_a_ray_of_a_meter_is_seen_where_the_ray_starts() {
+    for sensor in meters() {
+        for film in [vec2(0.35, 0.4), vec2(0.85, 0.125), vec2(0.25, 0.875), vec2(0.0625, 0.7)] {
+            let SensorRay { ray, pdf, position } = sensor.ray(film, APERTURE);
+            let point = ray.origin + ray.direction * 3.0;
+            let seen = sensor.project(point, APERTURE).unwrap();
+            assert!((seen.film - film).length() < 1e-4, "{} {film}: {}", sensor.name(), seen.film);
+            assert!((seen.ray.direction - ray.direction).length() < 1e-4);
+            assert!((seen.ray.origin - ray.origin).length() < 1e-3);
+            assert!((seen.pdf / pdf - 1.0).abs() < 1e-3);
+            let squared = if sensor.is_parallel() { 1.0 } else { point.distance_squared(position) };
+            assert!((seen.distance_squared / squared - 1.0).abs() < 1e-3);
+            assert!(sensor.project(ray.origin - ray.direction * 0.1, APERTURE).is_none());
+            assert!(sensor.project_direction(-ray.direction, APERTURE).is_none());
+            // The density is the film area over the solid angle, or area, that it is seen in.
+            let at = |dx, dy| {
+                let ray = sensor.ray(film + 1e-2 * vec2(dx, dy), APERTURE).ray;
+                if sensor.is_parallel() { ray.origin } else { ray.direction }.as_dvec3()
+            };
+            let (across, down) = (at(0.5, 0.0) - at(-0.5, 0.0), at(0.0, 0.5) - at(0.0, -0.5));
+            let area = 1e4 * across.cross(down).dot(ray.direction.as_dvec3()).abs();
+            assert!((area * f64::from(pdf) - 1.0).abs() < 2e-3, "{} {film}: {area}", sensor.name());
+        }
+    }
+}
+
+/// Nothing beside a disc of rays, and nothing of one ray.
+#[test]
+fn what_no_ray_meets_is_not_seen() {
+    let distant = &meters()[0];
+    assert!(distant.is_connectible() && distant.is_parallel());
+    let SensorRay { ray, .. } = distant.ray(vec2(0.0, 0.5), Vec2::ZERO);
+    let beside = 1e-3 * (ray.origin - distant.position());
+    let at = ray.origin + ray.direction;
+    assert!(
+        distant.project(at - beside, Vec2::ZERO).is_some()
+            && distant.project(at + beside, Vec2::ZERO).is_none()
+    );
+    let meter = built("radiancemeter", &[], CROP).unwrap();
+    let ray = meter.ray(vec2(0.5, 0.5), Vec2::ZERO).ray;
+    assert_eq!((ray.origin, ray.direction), (Vec3::ZERO, Vec3::Z));
+    assert!(!meter.is_connectible() && meter.project(ray.direction, Vec2::ZERO).is_none());
 }
 
 #[test]

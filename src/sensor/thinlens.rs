@@ -1,6 +1,6 @@
 //! A camera with depth of field: Mitsuba's `thinlens`.
 
-use super::{COMMON, Crop, FIELD_OF_VIEW, LENS, Projection, SensorRay, lens::Lens};
+use super::{ALL, CLIP, Crop, FIELD_OF_VIEW, LENS, Projection, SensorRay, lens::Lens};
 use crate::{
     description::{Params, Table, table},
     error::Result,
@@ -24,7 +24,7 @@ impl ThinLens {
         "A camera with depth of field.";
         number("aperture_radius", "m", above(0.0, MAX), Required, "Radius of the lens."),
         number("focus_distance", "m", above(0.0, MAX), Said("`far_clip`"), "Distance of the plane in focus, along the axis.");
-        LENS, FIELD_OF_VIEW, COMMON
+        LENS, FIELD_OF_VIEW, CLIP, ALL
     };
 
     pub(super) fn build(params: &Params<'_>, recentre: DVec3, crop: Crop) -> Result<Self> {

@@ -109,6 +109,18 @@ fn window(params: &Params<'_>, overrides: Overrides) -> Result<Window> {
     }
 }
 
+/// The film of `sensor`, which measures one number: one pixel, whose samples all count alike. The size of `film` may be
+/// `given`.
+pub fn of_one_pixel(film: &Film, sensor: &Object, given: bool) -> Result<Film> {
+    let [width, height] = film.window.full_size;
+    if given && [width, height] != [1, 1] {
+        let expected = format!("a film of one pixel for the {}", sensor.plugin);
+        let remedy = "set \"width\" and \"height\" of its film to 1, and leave out --size";
+        return Err(Error::new(&sensor.location, expected, format!("{width} x {height} pixels"), remedy));
+    }
+    Ok(Film::new(Window::whole(1, 1), Filter::Box, false, film.format))
+}
+
 /// The part of `film` that is to be rendered.
 pub fn cropped(film: Film, crop: Option<Crop>) -> Result<Film> {
     let Some(crop) = crop else { return Ok(film) };

@@ -152,6 +152,7 @@ pub(super) const COMMON: &[Parameter] = rows! {
     boolean("flip_normals", false, "Reverses the normals: `interior`, `exterior` and the front of an emitter change sides."),
     nested("bsdf", Optional, "The surface; default: grey diffuse, on an emitter black."),
     nested("emitter", Optional, "The emitter: `area` or `directionalarea`."),
+    nested("sensor", Optional, "An `irradiancemeter`."),
     object("interior", "medium", "The medium behind the surface, against the normals."),
     object("exterior", "medium", "The medium in front of the surface, where the normals point."),
     ignored("silhouette_sampling_weight", "used for derivatives only"),

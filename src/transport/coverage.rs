@@ -52,6 +52,8 @@ struct EmitterTraits {
     connectible: bool,
     /// It is seen directly, so that there are paths of one segment.
     seen: bool,
+    /// Light subpaths can be connected to the lens.
+    lens: bool,
     /// The lens can be connected to the emitter itself.
     to_lens: bool,
 }
@@ -60,6 +62,7 @@ impl Traits {
     /// Those of `scene`. Unless `seen`, no emitter is in direct view.
     pub fn of(scene: &Scene, options: Paths, seen: bool) -> Self {
         let mut emitters = Vec::new();
+        let lens = scene.sensor.is_connectible();
         for light in &scene.lights.all {
             let emitter = &light.emitter;
             let hidden = options.hide_emitters && !matches!(emitter.kind, Kind::Medium(_));
@@ -68,7 +71,10 @@ impl Traits {
                 connectible: emitter.is_connectible(),
                 seen: seen && !hidden && emitter.is_hittable(),
                 // Parallel rays see one direction of what is at infinity, which no light subpath starts in.
-                to_lens: emitter.is_hittable() && !(emitter.is_infinite() && scene.sensor.is_parallel()),
+                lens,
+                to_lens: lens
+                    && emitter.is_hittable()
+                    && !(emitter.is_infinite() && scene.sensor.is_parallel()),
             };
             add(&mut emitters, traits, emitter.name);
         }
@@ -139,7 +145,7 @@ fn makers(emitter: EmitterTraits, dirac: &[bool]) -> Vec<StrategyKind> {
         StrategyKind::NextEvent => emitter.connectible && rough(dirac.first()),
         StrategyKind::Connection => dirac.windows(2).any(|pair| pair == [false, false]),
         StrategyKind::Lens if dirac.is_empty() => emitter.seen && emitter.to_lens,
-        StrategyKind::Lens => rough(dirac.last()),
+        StrategyKind::Lens => emitter.lens && rough(dirac.last()),
         // Never for more than single scattering.
         StrategyKind::Equiangular => false,
     };
@@ -294,9 +300,9 @@ mod tests {
     use super::*;
 
     const LAMP: EmitterTraits =
-        EmitterTraits { hittable: true, connectible: true, seen: true, to_lens: true };
+        EmitterTraits { hittable: true, connectible: true, seen: true, lens: true, to_lens: true };
     const POINT: EmitterTraits =
-        EmitterTraits { hittable: false, connectible: true, seen: false, to_lens: false };
+        EmitterTraits { hittable: false, connectible: true, seen: false, lens: true, to_lens: false };
     const BEAM: EmitterTraits = EmitterTraits { connectible: false, ..POINT };
 
     fn traits(emitters: &[EmitterTraits], smooth: bool) -> Traits {

@@ -245,7 +245,7 @@ impl<'a, P: Profile, R: Observer> LightPath<'a, P, R> {
             lift: Lift::NONE,
             medium: scene.media_map.sensor,
             within: false,
-            value: Spectrum::splat(pdf),
+            value: Spectrum::splat(pdf * scene.sensor.response()),
             pdf_fwd: pdf,
             cosine: 1.0,
             inv_pdf: 1.0,

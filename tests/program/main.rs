@@ -24,6 +24,7 @@ mod inputs;
 mod keeping;
 mod layering;
 mod manual;
+mod meters;
 mod outputs;
 mod page;
 mod phase;

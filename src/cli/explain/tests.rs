@@ -6,7 +6,7 @@ use crate::{
         parameter::{Default, Kind},
         params::NOTES,
     },
-    format,
+    format, sensor,
     settings::Overrides,
 };
 use serde_json::{Map, Value, json};
@@ -18,6 +18,8 @@ fn beside(plugin: &str, name: &str) -> Value {
         ("equipotential", "p0") => json!({"shape": "line", "p1": [5, 0, 0]}),
         ("equipotential", "p1") => json!({"shape": "segment", "p0": [5, 0, 0]}),
         ("equipotential", "radius") => json!({"shape": "sphere"}),
+        ("radiancemeter", "origin") => json!({"direction": [0, 0, 1]}),
+        ("radiancemeter", "direction") => json!({"origin": [0, 0, 0]}),
         (_, "alpha_u") => json!({"alpha_v": 0.5}),
         (_, "alpha_v") => json!({"alpha_u": 0.5}),
         (_, "fov_axis") => json!({"fov": 30}),
@@ -69,8 +71,11 @@ fn sample_of(tag: &str, plugin: &str) -> Value {
         ("volume", "cosine") => json!({"type": "wave", "vector": [1, 0, 0]}),
         ("volume", "polynomial") => json!({"type": "term", "powers": [1, 0, 0]}),
         ("shape", "instance") => json!({"type": "shapegroup", "s": {"type": "sphere"}}),
+        ("shape", "distant") => json!({"type": "rectangle"}),
         ("shape", _) => json!({"type": "sphere"}),
-        ("sensor", _) => json!({"type": "perspective"}),
+        ("sensor", "batch") => json!({"type": "perspective"}),
+        ("sensor", _) => json!({"type": "irradiancemeter"}),
+        ("film", plugin) if sensor::is_meter(plugin) => json!({"type": "hdrfilm", "width": 1, "height": 1}),
         ("film", _) => json!({"type": "hdrfilm"}),
         ("sampler", _) => json!({"type": "independent"}),
         ("rfilter", _) => json!({"type": "box"}),
@@ -150,6 +155,7 @@ fn scene_of(tag: &str, object: Value) -> Value {
     let plugin = object["type"].as_str().unwrap().to_owned();
     let camera = json!({"type": "perspective"});
     match (tag, plugin.as_str()) {
+        ("sensor", "irradiancemeter") => json!({"type": "scene", "a": {"type": "sphere", "m": object}}),
         ("sensor", _) => json!({"type": "scene", "a": object}),
         ("film" | "sampler", _) => json!({"type": "scene", "a": {"type": "perspective", tag: object}}),
         ("rfilter", _) => {
@@ -227,7 +233,8 @@ fn every_row_is_read_and_nothing_is_read_without_a_row() {
     for (tag, plugin, table) in everything().filter(|(tag, ..)| *tag != "scene") {
         NOTES.take();
         // No grid with a name is kept with the scenes; each shape needs parameters of its own, which have rows too.
-        let apart = [("gridvolume", "grid"), ("equipotential", "shape")];
+        // One on a shape that it refers to is not in one.
+        let apart = [("gridvolume", "grid"), ("equipotential", "shape"), ("irradiancemeter", "shape")];
         let rows = table.rows().filter(|row| !apart.contains(&(plugin, row.name)));
         all.extend(rows.flat_map(|row| faults(tag, plugin, table, row)));
         all.extend(unread(tag, plugin, table));

@@ -10,6 +10,7 @@ use crate::scene::{
     unseen::Unseen,
 };
 use crate::{
+    description::Location,
     emitter::Kind,
     error::Result,
     math::{DVec3, Vec3},
@@ -38,9 +39,13 @@ impl Builder<'_> {
     ) -> Result<Finished> {
         self.check_memory()?;
         let geometry = self.geometry();
+        camera.sensor.settle(geometry.shapes());
         let stated = self.surfaces.clone();
         let (geometry, surveyed) = self.survey(geometry, &mut camera)?;
         let Surveyed { known, survey, sensor_medium, overlaps, contradicts } = surveyed;
+        if let Some(shape) = camera.sensor.shape() {
+            self.warn_of_media_before(shape, &geometry, &known, sensor_medium, camera.location);
+        }
         let outside = known.infinity.most();
         let sky = self.emitters.iter().find(|placed| placed.emitter.is_infinite());
         self.names().warn_of_endless(outside, &self.media, sky.map(|placed| placed.location));
@@ -79,6 +84,23 @@ impl Builder<'_> {
             recentre,
         };
         Ok(Finished { scene, shape_names, bsdf_names, apart })
+    }
+
+    /// An irradiancemeter on `shape` is in one medium.
+    fn warn_of_media_before(
+        &self,
+        shape: u32,
+        geometry: &Geometry,
+        known: &Known,
+        ambient: MediumIndex,
+        location: &Location,
+    ) {
+        let locator = Locator { geometry, surfaces: &self.surfaces, known };
+        if (Placement { locator, names: &self.names(), ambient }).straddles(shape) {
+            let text = "this shape has different media before it. All of its rays start in the medium before its middle; \
+                        measure on several shapes, each before one medium";
+            self.library.warn(location, text);
+        }
     }
 
     /// All emitters, emissive media among them, with the medium that each lies in.

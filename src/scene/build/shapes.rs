@@ -13,6 +13,7 @@ use crate::{
         contact::{Nature, Rank},
         media::Boundary,
     },
+    sensor::ON_SHAPE,
     settings::only_one,
     shape::{self, Shape, ShapeModel as _},
 };
@@ -45,6 +46,12 @@ impl<'a> Builder<'a> {
             [one] => (self.bsdf(one.object)?, Asked::by(one.object, self.library)),
             [_, second, ..] => return Err(only_one(second, "bsdf")),
         };
+        let sensors = params.children("sensor", |child| child.object.plugin == ON_SHAPE)?;
+        if let Some(sensor) = sensors.first() {
+            let remedy = "put it on a shape that stands in the scene itself";
+            let expected = "an irradiancemeter on one shape";
+            return Err(Error::new(sensor.location, expected, "one on a shape of a group", remedy));
+        }
         // One that was built before has been read then.
         if is_read {
             params.finish()?;

@@ -7,7 +7,7 @@ use crate::{
     film::Film,
     math::{Vec2, Vec3},
     medium::MediumIndex,
-    sensor::{self, Crop, Sensor},
+    sensor::{self, Crop, Sensor, Site},
     settings::{
         Overrides, film, only_one,
         sampler::{self, Sampling},
@@ -35,10 +35,16 @@ pub(super) struct Camera<'a> {
 impl<'a> Builder<'a> {
     pub(super) fn view(&mut self, object: &'a Object, overrides: Overrides) -> Result<View<'a>> {
         let (params, build) = sensor::ROWS.read(object, self.library)?;
-        let film = match params.children("film", film::is_film)?.as_slice() {
+        let films = params.children("film", film::is_film)?;
+        let film = match films.as_slice() {
             [] => film::default(overrides),
             [one] => film::build(one.object, self.library, overrides)?,
             [_, second, ..] => return Err(only_one(second, "film")),
+        };
+        let is_sized = !films.is_empty() || overrides.size.is_some();
+        let film = match sensor::is_meter(&object.plugin) {
+            true => film::of_one_pixel(&film, object, is_sized)?,
+            false => film,
         };
         let film = film::cropped(film, overrides.crop)?;
         let sampling = match params.children("sampler", |child| sampler::ROWS.has(child.object))?.as_slice() {
@@ -48,7 +54,8 @@ impl<'a> Builder<'a> {
         };
         let stated = self.stated_medium(&params)?;
         let crop = Crop { film: film.window.full_size, offset: film.window.offset };
-        let sensor = build(&params, self.recentre, crop)?;
+        let (shapes, places) = (self.shapes.as_slice(), &self.parts.shapes);
+        let sensor = build(&params, &Site { recentre: self.recentre, crop, shapes, places })?;
         params.finish()?;
         let middle = film.window.size.map(|pixels| 0.5 * pixels as f32);
         let start = sensor.ray(middle.into(), Vec2::ZERO).ray.origin;

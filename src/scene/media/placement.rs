@@ -238,12 +238,23 @@ impl Placement<'_> {
 
     /// The medium on the emitting side of a shape, and whether light of different points starts in different ones.
     pub(crate) fn of_shape(&self, shape: u32, location: &Location) -> (MediumIndex, bool) {
+        self.of_points(self.before(shape), self.is_stated(shape), "an emitting shape", location)
+    }
+
+    /// True if different points of a shape have different media before them.
+    pub(crate) fn straddles(&self, shape: u32) -> bool {
+        let mut media = self.before(shape).map(|located| located.medium);
+        let first = media.next();
+        !self.locator.known.is_uniform() && media.any(|medium| Some(medium) != first)
+    }
+
+    /// What lies before points of a shape.
+    fn before(&self, shape: u32) -> impl Iterator<Item = Located> {
         let mut stream = Stream::new(5, u64::from(shape), 0, Purpose::Pilot);
-        let located = (0..POINTS).map(|_| {
+        (0..POINTS).map(move |_| {
             let point = self.locator.geometry.sample_area(shape, &mut stream);
             self.in_front_of(&point, &mut stream)
-        });
-        self.of_points(located, self.is_stated(shape), "an emitting shape", location)
+        })
     }
 
     /// The medium that a beam leaves `disk` in, and whether that of different points differs.

@@ -1,0 +1,122 @@
+//! What measures one number along parallel rays: Mitsuba's `radiancemeter` and `distant`. Their films have one pixel.
+
+use super::{ALL, Orthographic, Site, orthographic::Extent};
+use crate::{
+    description::{Params, Table, params::Child, table},
+    error::{Error, Result},
+    math::{Bounds, DMat4, DVec3},
+    shape::{self, Shape},
+};
+
+/// Parameters of `radiancemeter`.
+pub(super) const RADIANCEMETER: Table = table! {
+    "The radiance along one ray: along +z, before `to_world`. Its film has one pixel.";
+    transform("to_world", "Where the ray starts, and its direction."),
+    vector("origin", "m", Optional, "In place of `to_world`: where the ray starts."),
+    vector("direction", "", Optional, "Where the ray goes, from `origin`.");
+    ALL
+};
+
+/// Parameters of `distant`.
+pub(super) const DISTANT: Table = table! {
+    "The mean radiance along parallel rays from outside of the scene, along +z before `to_world`. Its film has one pixel.";
+    transform("to_world", "Turns the direction."),
+    vector("direction", "", Optional, "In place of `to_world`: where the rays go."),
+    vector("target", "m", Said("all of the scene"), "The point that the one ray meets; or a rectangle or disk, which they meet evenly."),
+    nested("shape", Optional, "The `target`: a rectangle or disk, which itself is not in the scene.");
+    ALL
+};
+
+/// Reads the parameters of a `radiancemeter`.
+pub(super) fn radiancemeter(params: &Params<'_>, site: &Site<'_>) -> Result<Orthographic> {
+    let origin = params.optional_vector("origin")?;
+    let direction = direction(params)?;
+    let place = params.transform("to_world")?.transform_point3(DVec3::ZERO);
+    if params.has("origin") != params.has("direction") {
+        let (expected, remedy) =
+            ("origin and direction together", "add the other one, or place the ray by to_world");
+        return Err(Error::new(params.location(), expected, "one of them", remedy));
+    }
+    let start = origin.unwrap_or(place) - site.recentre;
+    Ok(Orthographic::spanned("radiancemeter", start, [DVec3::ZERO; 2], direction, Extent::Ray))
+}
+
+/// Reads the parameters of a `distant` sensor.
+pub(super) fn distant(params: &Params<'_>, site: &Site<'_>) -> Result<Orthographic> {
+    let direction = direction(params)?;
+    let (middle, radius) = sphere_around(site.shapes);
+    let ([middle, across, down], extent) =
+        match params.children("shape", |child| shape::is_shape(child.object))?.as_slice() {
+            [] => match params.optional_vector("target")? {
+                Some(point) => ([point - site.recentre, DVec3::ZERO, DVec3::ZERO], Extent::Ray),
+                None => {
+                    let (x, y) = direction.any_orthonormal_pair();
+                    // The disc touches the sphere in front.
+                    ([middle + direction * radius, x * radius, y * radius], Extent::Disc)
+                }
+            },
+            [target] => of_shape(target, params, direction, site)?,
+            [_, second, ..] => {
+                let remedy = "remove one of them";
+                return Err(Error::new(second.location, "one target", "a second target", remedy));
+            }
+        };
+    let start = middle - direction * (2.0 * radius);
+    Ok(Orthographic::spanned("distant", start, [across, down], direction, extent))
+}
+
+/// Unit direction of sight.
+fn direction(params: &Params<'_>) -> Result<DVec3> {
+    let to_world = params.transform("to_world")?;
+    let Some(direction) = params.optional_vector("direction")? else {
+        return Ok(to_world.transform_vector3(DVec3::Z).normalize());
+    };
+    if params.has("to_world") {
+        return Err(Error::new(params.location(), "direction or to_world", "both", "remove one of them"));
+    }
+    let found = || params.complain("direction", "a direction other than 0 0 0", "0 0 0");
+    direction.try_normalize().ok_or_else(found)
+}
+
+/// Middle and half axes of a flat `target`, and what lies between them.
+fn of_shape(
+    target: &Child<'_>,
+    params: &Params<'_>,
+    direction: DVec3,
+    site: &Site<'_>,
+) -> Result<([DVec3; 3], Extent)> {
+    let extent = match target.object.plugin.as_str() {
+        "rectangle" => Extent::Rectangle,
+        "disk" => Extent::Disc,
+        other => {
+            let remedy = "use a rectangle or a disk in its place, or a point";
+            return Err(Error::new(target.location, "a target that is flat", format!("a {other}"), remedy));
+        }
+    };
+    let (shape, _) = shape::ROWS.read(target.object, params.library)?;
+    let place = DMat4::from_translation(-site.recentre) * shape.transform("to_world")?;
+    // One of the scene is read there.
+    if !site.places.contains_key(&target.object.location) {
+        shape.boolean("flip_normals")?;
+        shape.finish()?;
+    }
+    let [x, y] = [DVec3::X, DVec3::Y].map(|axis| place.transform_vector3(axis));
+    if x.cross(y).normalize().dot(direction).abs() < EDGE_ON {
+        let remedy = "turn it towards the rays";
+        return Err(Error::new(target.location, "a target across the rays", "one along them", remedy));
+    }
+    Ok(([place.transform_point3(DVec3::ZERO), x, y], extent))
+}
+
+/// Cosine of the angle between a target and the rays below which it counts as along them.
+const EDGE_ON: f64 = 1e-6;
+
+/// Middle and radius of the sphere around the box around all `shapes` (m), as in Mitsuba.
+fn sphere_around(shapes: &[Shape]) -> (DVec3, f64) {
+    let Bounds { low, high } = shapes.iter().map(Shape::bounds).fold(Bounds::EMPTY, Bounds::union);
+    if shapes.is_empty() {
+        return (DVec3::ZERO, 1.0);
+    }
+    let (low, high) = (low.as_dvec3(), high.as_dvec3());
+    (0.5 * (low + high), 0.5 * (high - low).length())
+}
