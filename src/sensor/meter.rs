@@ -1,12 +1,34 @@
 //! What measures one number along parallel rays: Mitsuba's `radiancemeter` and `distant`. Their films have one pixel.
 
-use super::{ALL, Orthographic, Site, orthographic::Extent};
+use super::{ALL, Orthographic, Projection, SensorRay, Site};
 use crate::{
     description::{Params, Table, params::Child, table},
     error::{Error, Result},
-    math::{Bounds, DMat4, DVec3},
+    math::{Bounds, DMat4, DVec3, Vec2, Vec3, warp},
     shape::{self, Shape},
 };
+use std::f32::consts::FRAC_1_PI;
+
+/// Parallel rays whose pixel is the image.
+#[derive(Clone, Debug)]
+pub struct Meter {
+    /// The plugin name.
+    pub(super) name: &'static str,
+    extent: Extent,
+    /// Over a rectangle, or with the middle of a disc and two half axes for its first pixel.
+    parallel: Orthographic,
+}
+
+/// Where the rays start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Extent {
+    /// All over a parallelogram.
+    Rectangle,
+    /// All over a disc or ellipse.
+    Disc,
+    /// At one point. No light subpath finds the one ray from there.
+    Ray,
+}
 
 /// Parameters of `radiancemeter`.
 pub(super) const RADIANCEMETER: Table = table! {
@@ -28,7 +50,7 @@ pub(super) const DISTANT: Table = table! {
 };
 
 /// Reads the parameters of a `radiancemeter`.
-pub(super) fn radiancemeter(params: &Params<'_>, site: &Site<'_>) -> Result<Orthographic> {
+pub(super) fn radiancemeter(params: &Params<'_>, site: &Site<'_>) -> Result<Meter> {
     let origin = params.optional_vector("origin")?;
     let direction = direction(params)?;
     let place = params.transform("to_world")?.transform_point3(DVec3::ZERO);
@@ -38,11 +60,11 @@ pub(super) fn radiancemeter(params: &Params<'_>, site: &Site<'_>) -> Result<Orth
         return Err(Error::new(params.location(), expected, "one of them", remedy));
     }
     let start = origin.unwrap_or(place) - site.recentre;
-    Ok(Orthographic::spanned("radiancemeter", start, [DVec3::ZERO; 2], direction, Extent::Ray))
+    Ok(Meter::new("radiancemeter", start, [DVec3::ZERO; 2], direction, Extent::Ray))
 }
 
 /// Reads the parameters of a `distant` sensor.
-pub(super) fn distant(params: &Params<'_>, site: &Site<'_>) -> Result<Orthographic> {
+pub(super) fn distant(params: &Params<'_>, site: &Site<'_>) -> Result<Meter> {
     let direction = direction(params)?;
     let (middle, radius) = sphere_around(site.shapes);
     let ([middle, across, down], extent) =
@@ -62,7 +84,57 @@ pub(super) fn distant(params: &Params<'_>, site: &Site<'_>) -> Result<Orthograph
             }
         };
     let start = middle - direction * (2.0 * radius);
-    Ok(Orthographic::spanned("distant", start, [across, down], direction, extent))
+    Ok(Meter::new("distant", start, [across, down], direction, extent))
+}
+
+impl Meter {
+    /// Rays in unit `direction` from around `middle`, half `axes` far.
+    fn new(name: &'static str, middle: DVec3, axes: [DVec3; 2], direction: DVec3, extent: Extent) -> Self {
+        let [x, y] = axes;
+        let (corner, steps) = match extent {
+            Extent::Rectangle => (middle - x - y, [2.0 * x, 2.0 * y]),
+            Extent::Disc => (middle, axes),
+            // Any that can be inverted: the ray starts at the corner.
+            Extent::Ray => (middle, direction.any_orthonormal_pair().into()),
+        };
+        Self { name, extent, parallel: Orthographic::endless(corner, steps, direction) }
+    }
+
+    /// True if light subpaths can be connected to it.
+    pub fn is_connectible(&self) -> bool {
+        self.extent != Extent::Ray
+    }
+
+    /// Some point that a ray starts at.
+    pub fn position(&self) -> Vec3 {
+        self.ray(Vec2::splat(0.5)).position
+    }
+
+    /// The ray through a film position in [0, 1).
+    pub fn ray(&self, film: Vec2) -> SensorRay {
+        let start = self.parallel.ray(match self.extent {
+            Extent::Rectangle => film,
+            Extent::Disc => warp::to_disk(film),
+            Extent::Ray => Vec2::ZERO,
+        });
+        SensorRay { pdf: self.pdf(start.pdf), ..start }
+    }
+
+    /// How `point` is seen; none where it lies behind or beside where rays start, or nothing can be connected.
+    pub fn project(&self, point: Vec3) -> Option<Projection> {
+        let seen = self.parallel.project(point)?;
+        let film = match self.extent {
+            Extent::Rectangle => seen.film,
+            Extent::Disc if seen.film.length_squared() <= 1.0 => warp::from_disk(seen.film),
+            Extent::Disc | Extent::Ray => return None,
+        };
+        Some(Projection { film, pdf: self.pdf(seen.pdf), ..seen })
+    }
+
+    /// Pixels per area, which are `pdf` for the parallelogram of the steps.
+    fn pdf(&self, pdf: f32) -> f32 {
+        if self.extent == Extent::Disc { pdf * FRAC_1_PI } else { pdf }
+    }
 }
 
 /// Unit direction of sight.

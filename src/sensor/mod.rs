@@ -21,6 +21,7 @@ pub use batch::{BATCH, BATCH_TABLE};
 use irradiance::Irradiance;
 use lens::LENS;
 pub(crate) use lens::{FIELD_OF_VIEW, half_width};
+use meter::Meter;
 pub use orthographic::Orthographic;
 pub use perspective::Perspective;
 pub use thinlens::ThinLens;
@@ -43,6 +44,8 @@ pub enum Sensor {
     ThinLens(ThinLens),
     /// Parallel rays.
     Orthographic(Orthographic),
+    /// Parallel rays of which one number is measured.
+    Meter(Meter),
     /// A shape, on which all light counts.
     Irradiance(Box<Irradiance>),
 }
@@ -123,9 +126,9 @@ pub const ROWS: Registry<Plugin<BuildSensor>> = Registry::new(
         ),
         (
             "radiancemeter",
-            plugin(meter::RADIANCEMETER, |p, site| meter::radiancemeter(p, site).map(Sensor::Orthographic)),
+            plugin(meter::RADIANCEMETER, |p, site| meter::radiancemeter(p, site).map(Sensor::Meter)),
         ),
-        ("distant", plugin(meter::DISTANT, |p, site| meter::distant(p, site).map(Sensor::Orthographic))),
+        ("distant", plugin(meter::DISTANT, |p, site| meter::distant(p, site).map(Sensor::Meter))),
         (
             ON_SHAPE,
             plugin(Irradiance::TABLE, |p, site| {
@@ -181,7 +184,7 @@ impl Sensor {
     pub fn sample_aperture(&self, stream: &mut Stream) -> Vec2 {
         match self {
             Self::ThinLens(lens) => lens.sample_aperture(stream),
-            Self::Perspective(_) | Self::Orthographic(_) => Vec2::ZERO,
+            Self::Perspective(_) | Self::Orthographic(_) | Self::Meter(_) => Vec2::ZERO,
             Self::Irradiance(_) => Irradiance::sample_aperture(stream),
         }
     }
@@ -193,6 +196,7 @@ impl Sensor {
             Self::Perspective(sensor) => sensor.ray(film),
             Self::ThinLens(sensor) => sensor.ray(film, aperture),
             Self::Orthographic(sensor) => sensor.ray(film),
+            Self::Meter(sensor) => sensor.ray(film),
             Self::Irradiance(sensor) => sensor.ray(film, aperture),
         }
     }
@@ -204,6 +208,7 @@ impl Sensor {
             Self::Perspective(sensor) => sensor.project(point),
             Self::ThinLens(sensor) => sensor.project(point, aperture),
             Self::Orthographic(sensor) => sensor.project(point),
+            Self::Meter(sensor) => sensor.project(point),
             Self::Irradiance(sensor) => sensor.project(point, aperture),
         }
     }
@@ -214,7 +219,7 @@ impl Sensor {
         match self {
             Self::Perspective(sensor) => sensor.project_direction(direction),
             Self::ThinLens(sensor) => sensor.project_direction(direction, aperture),
-            Self::Orthographic(_) => None,
+            Self::Orthographic(_) | Self::Meter(_) => None,
             Self::Irradiance(sensor) => sensor.project_direction(direction, aperture),
         }
     }
@@ -222,13 +227,13 @@ impl Sensor {
     /// True where all rays are parallel: the sensor acts as a point at infinity.
     #[inline(always)]
     pub fn is_parallel(&self) -> bool {
-        matches!(self, Self::Orthographic(_))
+        matches!(self, Self::Orthographic(_) | Self::Meter(_))
     }
 
     /// True if light subpaths can be connected to it.
     #[inline(always)]
     pub fn is_connectible(&self) -> bool {
-        if let Self::Orthographic(sensor) = self { sensor.is_connectible() } else { true }
+        if let Self::Meter(sensor) = self { sensor.is_connectible() } else { true }
     }
 
     /// What it measures of an even radiance of 1: of irradiance pi.
@@ -255,6 +260,7 @@ impl Sensor {
             Self::Perspective(sensor) => sensor.position(),
             Self::ThinLens(sensor) => sensor.position(),
             Self::Orthographic(sensor) => sensor.position(),
+            Self::Meter(sensor) => sensor.position(),
             Self::Irradiance(sensor) => sensor.position(),
         }
     }
@@ -264,7 +270,8 @@ impl Sensor {
         match self {
             Self::Perspective(_) => "perspective",
             Self::ThinLens(_) => "thinlens",
-            Self::Orthographic(sensor) => sensor.name,
+            Self::Orthographic(_) => "orthographic",
+            Self::Meter(sensor) => sensor.name,
             Self::Irradiance(_) => ON_SHAPE,
         }
     }
