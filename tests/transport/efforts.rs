@@ -7,7 +7,7 @@ use crate::common::{
 };
 use serde_json::{Value, json};
 use tyndall::{
-    learning::pilot::{self, Choice},
+    learning::pilot::{self, Choice, Decided},
     passes::{Settings, budget::Budget},
     transport::{Effort, Strategies, Survival},
 };
@@ -53,7 +53,7 @@ fn chosen(scene: &Value) -> Choice {
     let stage = Stage::new(scene);
     let settings = stage.settings(Strategies::BDPT, 1, 0);
     let settings = Settings { budget: Budget::ENDLESS, ..settings };
-    pilot::choose(&stage.setup.scene, &stage.setup.film, &settings, None).choice
+    pilot::choose(&stage.setup.scene, &stage.setup.film, &settings, Decided::default()).choice
 }
 
 /// Light subpaths find little of a scene without walls under a sky, and all that lights a room by its ceiling.

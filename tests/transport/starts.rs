@@ -6,7 +6,7 @@ use crate::common::{
     pieces::*,
 };
 use serde_json::{Value, json};
-use tyndall::transport::{Effort, Strategies};
+use tyndall::transport::{Effort, Sky, Strategies};
 
 fn panel(emitter: Value) -> Value {
     with(lamp_panel([0.1, 0.85, -0.2], 0.25, 1.0), &[("emitter", emitter)])
@@ -47,6 +47,24 @@ fn outdoors() -> Value {
         ("sun", sun([0.3, -1.0, -0.2], 1.0)),
         ("searchlight", beam([2.0, 3.0, 0.5], [-1.0, -1.2, -0.2], 2.0, rgb(0.5, 1.0, 2.0))),
     ])
+}
+
+/// Whether next-event estimation connects to the sky changes the noise, not the image.
+#[test]
+fn a_sky_that_is_hit_only_shows_the_same() {
+    let mut claims = Claims::new();
+    let mut stage = Stage::new(&outdoors());
+    let mut measure = |strategies: Strategies, effort: Effort, first: u64| {
+        stage.setup.integrator.options.effort = effort;
+        Sample::of(&stage.renders(strategies, 100, first..first + 24), stage.width())
+    };
+    let usual = measure(Strategies::BDPT, Effort::default(), 0);
+    let hit = Effort { sky: Sky::Hit, ..Effort::default() };
+    claims.equal("pt", &measure(Strategies::PT, hit, 1000), &usual);
+    claims.equal("bdpt", &measure(Strategies::BDPT, hit, 2000), &usual);
+    let learnt = Effort { learnt_starts: true, light_walks: 2.0, connections: 2, ..hit };
+    claims.equal("bdpt, learnt", &measure(Strategies::BDPT, learnt, 3000), &usual);
+    claims.settle();
 }
 
 /// A medium that shines, and a lamp in it.
