@@ -19,8 +19,8 @@ use crate::{
         Algorithm, Heuristic, Interaction, Options,
         observer::Observer,
         profiles::{
-            Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Guided, ProfileName,
-            Smoke, Vacuum,
+            Bounded, ByCompared, ByCutoff, ByKind, ChromaticBounded, ChromaticFog, Everything, Fire, Fog,
+            Guided, ProfileName, Smoke, Vacuum,
         },
     },
 };
@@ -87,6 +87,7 @@ pub fn choose<'a>(
         (Heuristic::Balance, ProfileName::Smoke) => Ready::<Smoke>::prepare,
         (Heuristic::Balance, ProfileName::Fire) => Ready::<Fire>::prepare,
         (Heuristic::Balance, ProfileName::ChromaticFog) => Ready::<ChromaticFog>::prepare,
+        (Heuristic::Balance, ProfileName::ChromaticBounded) => Ready::<ChromaticBounded>::prepare,
         (Heuristic::Balance, ProfileName::Everything) => Ready::<Everything>::prepare,
     };
     prepare(scene, film, settings, learnt, per_block)

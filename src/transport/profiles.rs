@@ -68,6 +68,12 @@ profile! {
     heterogeneous: false, infinite: false, emissive: false
 }
 
+profile! {
+    /// Homogeneous media of any colour with index-matched boundaries, under any emitter: milk, water and tea in the open.
+    ChromaticBounded, "chromatic-bounded", channels: Spectrum, media: true, nulls: true,
+    heterogeneous: false, infinite: true, emissive: false
+}
+
 /// All there is, weighed by the heuristic that `S` sums for.
 #[derive(Clone, Copy, Debug)]
 pub struct Everything<S = Balance<Spectrum>>(PhantomData<S>);
@@ -167,6 +173,8 @@ pub enum ProfileName {
     Fire,
     /// [`ChromaticFog`].
     ChromaticFog,
+    /// [`ChromaticBounded`].
+    ChromaticBounded,
     /// [`Everything`].
     Everything,
 }
@@ -184,7 +192,7 @@ impl ProfileName {
             Needs { chromatic: false, nulls: false, infinite: false, .. } => Self::Fog,
             Needs { chromatic: false, .. } => Self::Bounded,
             Needs { nulls: false, infinite: false, .. } => Self::ChromaticFog,
-            Needs { .. } => Self::Everything,
+            Needs { .. } => Self::ChromaticBounded,
         }
     }
 
@@ -204,6 +212,7 @@ impl ProfileName {
             Self::Smoke => Smoke::NAME,
             Self::Fire => Fire::NAME,
             Self::ChromaticFog => ChromaticFog::NAME,
+            Self::ChromaticBounded => ChromaticBounded::NAME,
             Self::Everything => <Everything>::NAME,
         }
     }
@@ -229,6 +238,7 @@ impl ProfileName {
             Self::Smoke => of::<Smoke>(),
             Self::Fire => of::<Fire>(),
             Self::ChromaticFog => of::<ChromaticFog>(),
+            Self::ChromaticBounded => of::<ChromaticBounded>(),
             Self::Everything => of::<Everything>(),
         }
     }

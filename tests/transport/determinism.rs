@@ -42,7 +42,11 @@ fn scenes() -> Vec<(ProfileName, Value)> {
         (ProfileName::Bounded, scene(&cloud_under_sky(json!(1.5)))),
         (ProfileName::Fire, scene(&room_of(Some(with(medium(1.0, 0.8, 0.3), &[("radiance", json!(1))]))))),
         (ProfileName::ChromaticFog, scene(&room_of(Some(medium(chromatic.clone(), 0.8, 0.3))))),
-        (ProfileName::Everything, scene(&cloud_under_sky(chromatic))),
+        (ProfileName::ChromaticBounded, scene(&cloud_under_sky(chromatic.clone()))),
+        (
+            ProfileName::Everything,
+            scene(&room_of(Some(with(medium(chromatic, 0.8, 0.3), &[("radiance", json!(1))])))),
+        ),
     ]
 }
 

@@ -21,7 +21,8 @@ use super::{
     Connections, Effort, Estimator, Heuristic, LightCache, Nowhere, Options, Strategies, Survival,
     profile::Profile,
     profiles::{
-        Bounded, ByCompared, ByCutoff, ByKind, ChromaticFog, Everything, Fire, Fog, Guided, Smoke, Vacuum,
+        Bounded, ByCompared, ByCutoff, ByKind, ChromaticBounded, ChromaticFog, Everything, Fire, Fog, Guided,
+        Smoke, Vacuum,
     },
 };
 use crate::{
@@ -262,6 +263,8 @@ fn emitters_that_light_passes() {
 fn extinction_that_differs_between_channels() {
     examine_all::<ChromaticFog>("chromatic", &build(&[CHROMATIC_FOG, INSIDE, ROOM, LAMP, BALL]), 300);
     examine_all::<ChromaticFog>("1e-3, 1, 1e3", &build(&[EXTREME_FOG, INSIDE, ROOM, LAMP, BALL]), 300);
+    let milk = build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SUN, SKY, BULB]);
+    examine_all::<ChromaticBounded>("in the open", &milk, 1000);
     examine_all::<ChromaticFog>("one clear", &build(&[YELLOW_FOG, INSIDE, ROOM, LAMP, GLASS_BALL]), 300);
 }
 
