@@ -16,13 +16,13 @@ from tyndall.failure import Failure
 from tyndall.scene import Scene, changed
 from validation.closed_forms.case import SIZE
 from validation.compare import options_of
-from validation.stability import albedo, anisotropy, boundaries, contrast, grazing, index, lamps, report, scale, thickness, voids, walks
+from validation.stability import albedo, anisotropy, boundaries, contrast, grazing, index, lamps, published, report, scale, thickness, voids, walks
 from validation.stability.case import Case
 from validation.stability.judge import Found, judge
 from validation.stability.report import Line
 from tyndall.statistics import Estimate
 
-GROUPS = (thickness, albedo, anisotropy, contrast, scale, lamps, boundaries, grazing, walks, index, voids)
+GROUPS = (thickness, albedo, anisotropy, contrast, scale, lamps, boundaries, grazing, walks, index, voids, published)
 """In the order of the table."""
 PATIENCE = 300
 """Seconds after which one image counts as never finished."""
