@@ -12,6 +12,7 @@
 
 use super::{
     Choice, End, WALKS_END,
+    moments::{Counts, Subpaths, Sums, Weighed},
     record::{Found, Part, Work, Works, part},
 };
 use crate::{
@@ -70,37 +71,6 @@ impl Error {
     pub fn all(self) -> f64 {
         self.usual + self.few
     }
-}
-
-/// A contribution under one survival: its tile, its second moment, and the parts of strategies in its density.
-struct Weighed {
-    tile: u32,
-    unlearnt: f32,
-    without_sky: f32,
-    moment: f64,
-    shares: [f32; StrategyKind::ALL.len()],
-    /// The contribution itself, how often walks get as far over how often they did, and how much more often its strategy does.
-    value: f32,
-    passed: f32,
-    passed_own: f32,
-}
-
-/// Contributions of a camera subpath so far.
-#[derive(Clone, Copy)]
-struct Chain {
-    sample: u32,
-    /// Its pixel, among those that have samples.
-    pixel: u32,
-    sum: f64,
-    /// The same where longer paths follow.
-    before: f64,
-}
-
-/// What camera subpaths of a pixel bring.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    sum: f64,
-    square: f64,
 }
 
 /// What the samples say.
@@ -279,65 +249,58 @@ impl Forecast {
         self.found.iter().map(weigh).collect()
     }
 
-    /// Those of the pixels of every tile, added up.
+    /// The squared relative errors of the pixels of each tile that was seen, added up.
     ///
-    /// A contribution y of a sample under counts n is y n' / n (sum of n p) / (sum of n' p) under others, on average over the
-    /// samples of its strategy. Where walks pass roulette q times as often, both of two contributions come as often as the
-    /// longer one, and are greater by 1 / q of each.
+    /// Let a path have the density p_k by strategy k, which runs n_k times. By the balance heuristic (Veach 1997, section 9.2.2)
+    /// it brings y = f / (sum of n p), whichever strategy finds it. Under counts n' it brings y' = y (sum of n p) / (sum of n' p),
+    /// and strategy k finds it n'_k / n_k times as often. Three sums over the contributions of the pilot follow:
     ///
-    /// Connections through media find a random transmittance t, whose square is too large on average for emitters that are hit:
-    /// to these, t times what the weights take it for counts, which stands in their densities.
+    /// - Squares: all strategies together find the path (sum of n' p) / (sum of n p) times as often, so that the second moment
+    ///   of its contribution is y^2 (sum of n p) / (sum of n' p).
+    /// - Products of two contributions to one camera subpath. Given that subpath, its vertices are connected independently. So
+    ///   each of the two becomes y' n'_k / n_k on average. If q_i is how much more often walks get as far as contribution
+    ///   i under another roulette, both come q times as often for the longer path, and each is smaller by its own q.
+    /// - The squared mean, by pairs of different subpaths of a pixel: without bias.
+    ///
+    /// A connection through media has a random estimate t of the transmittance T, which the densities contain. A hit has none: its
+    /// part of the density counts with t T, whose mean is T^2, in place of t^2.
     fn errors(&self, choice: &Choice, weighed: &[Weighed]) -> Vec<f64> {
+        let counts = self.counts(choice);
         let mut moments = vec![0.0; self.tiles.len()];
-        let (learnt, with_sky) = (choice.effort.learnt_starts, choice.effort.sky == Sky::NextEvent);
+        let mut subpaths = Subpaths::new(self.pixels.len());
+        for ((_, found), one) in self.found.iter().zip(weighed) {
+            let density = counts.density(one);
+            let moment = &mut moments[one.tile as usize];
+            *moment += density.square(one, found.expected);
+            let own = counts.of(found.kind, one);
+            if found.kind != StrategyKind::Lens && own != 0.0 {
+                *moment += subpaths.add(found, one, one.value * own / density.all);
+            }
+        }
+        self.relative(&moments, &self.squared_means(&subpaths.finish()))
+    }
+
+    /// How often strategies run by `choice`.
+    fn counts(&self, choice: &Choice) -> Counts {
         // Connections to each vertex are as many, however many vertices light subpaths leave.
         let draws = self.light[index(End::AtOnce(self.survival))].kept.max(1.0)
             / self.light_work(&choice.effort).kept.max(1.0);
-        let mut counts = choice.counts().map(|count| count as f32);
-        counts[StrategyKind::Connection as usize] *= draws as f32;
-        let [hits, next_event, connections, lens, equiangular] = counts;
-        let mut sums = vec![Sums::default(); self.pixels.len()];
-        let mut end = |Chain { pixel, sum, .. }: Chain| {
-            if let Some(sums) = sums.get_mut(pixel as usize) {
-                (sums.sum, sums.square) = (sums.sum + sum, sums.square + sum * sum);
-            }
-        };
-        let mut chain = Chain { sample: u32::MAX, pixel: u32::MAX, sum: 0.0, before: 0.0 };
-        for ((_, found), one) in self.found.iter().zip(weighed) {
-            let Weighed { tile, unlearnt, without_sky, moment, shares, .. } = one;
-            let begun = if learnt { 1.0 } else { *unlearnt };
-            let joined = if with_sky { next_event } else { next_event * without_sky };
-            // Written out: all choices go through all contributions.
-            let camera = shares[0] * hits + shares[1] * joined + shares[4] * equiangular;
-            let light = shares[2] * connections + shares[3] * lens;
-            let density = camera + begun * light;
-            let hit = shares[0] * hits / density.max(f32::MIN_POSITIVE);
-            let moments = &mut moments[*tile as usize];
-            *moments += moment / f64::from(density) * f64::from(1.0 + (found.expected - 1.0) * hit);
-            let own = match found.kind {
-                StrategyKind::NextEvent => joined,
-                StrategyKind::Connection => connections * begun,
-                kind => counts[kind as usize],
-            };
-            if found.kind == StrategyKind::Lens || own == 0.0 {
-                continue;
-            }
-            if chain.sample != found.sample {
-                end(chain);
-                chain = Chain { sample: found.sample, pixel: found.pixel, sum: 0.0, before: 0.0 };
-            }
-            let value = one.value * own / density;
-            let arriving = f64::from(value * one.passed_own);
-            *moments += 2.0 * arriving * chain.before;
-            chain.sum += arriving;
-            chain.before += f64::from(value / one.passed);
-        }
-        end(chain);
-        let mut squared_means = vec![0.0; self.tiles.len()];
+        let mut each = choice.counts().map(|count| count as f32);
+        each[StrategyKind::Connection as usize] *= draws as f32;
+        Counts { each, learnt: choice.effort.learnt_starts, with_sky: choice.effort.sky == Sky::NextEvent }
+    }
+
+    /// Of each tile, where the pixels have these `sums`.
+    fn squared_means(&self, sums: &[Sums]) -> Vec<f64> {
+        let mut means = vec![0.0; self.tiles.len()];
         for ((tile, n), Sums { sum, square }) in self.pixels.iter().zip(sums) {
-            // By pairs of different samples: without bias.
-            squared_means[*tile] += (sum * sum - square) / (n - 1.0).max(1.0);
+            means[*tile] += (sum * sum - square) / (n - 1.0).max(1.0);
         }
+        means
+    }
+
+    /// Variances over squared means of the tiles that were seen, times their pixels.
+    fn relative(&self, moments: &[f64], squared_means: &[f64]) -> Vec<f64> {
         let pixels: f64 = self.seen().map(|(_, tile)| tile.pixels).sum();
         let mean = self.seen().map(|(_, tile)| tile.pixels * tile.mean).sum::<f64>() / pixels.max(1.0);
         let floor = 0.01 * mean * mean;

@@ -4,6 +4,7 @@
 //! the forecast from 3,000 samples of all, which sees the rare bright paths of every strategy by those of the others.
 
 mod forecast;
+mod moments;
 mod record;
 
 pub use forecast::Error;

@@ -1,0 +1,122 @@
+//! What contributions of a pilot would add to second moments under other counts and ends; see [`super::forecast`].
+
+use super::record::Found;
+use crate::transport::strategy::StrategyKind;
+
+/// A contribution under one survival: its tile, its second moment, and the parts of strategies in its density.
+pub(super) struct Weighed {
+    pub tile: u32,
+    pub unlearnt: f32,
+    pub without_sky: f32,
+    pub moment: f64,
+    pub shares: [f32; StrategyKind::ALL.len()],
+    /// The contribution itself.
+    pub value: f32,
+    /// How often walks get as far, over how often they did.
+    pub passed: f32,
+    /// The same of the strategy that brought it.
+    pub passed_own: f32,
+}
+
+/// How often strategies run, by kind.
+pub(super) struct Counts {
+    pub each: [f32; StrategyKind::ALL.len()],
+    /// Light subpaths begin at learnt starts.
+    pub learnt: bool,
+    /// Next-event estimation connects to the environment too.
+    pub with_sky: bool,
+}
+
+/// n' p over all strategies of a path, in units of the n p that the pilot had.
+pub(super) struct Density {
+    pub all: f32,
+    /// That of emitters that are hit.
+    hit: f32,
+}
+
+impl Counts {
+    /// Of the strategy `kind`, as far as it finds a contribution.
+    #[inline(always)]
+    pub(super) fn of(&self, kind: StrategyKind, one: &Weighed) -> f32 {
+        let count = self.each[kind as usize];
+        match kind {
+            StrategyKind::NextEvent if !self.with_sky => count * one.without_sky,
+            StrategyKind::Connection | StrategyKind::Lens if !self.learnt => count * one.unlearnt,
+            _ => count,
+        }
+    }
+
+    /// Written out: all choices go through all contributions.
+    #[inline(always)]
+    pub(super) fn density(&self, one: &Weighed) -> Density {
+        let [hits, next_event, connections, lens, equiangular] = self.each;
+        let begun = if self.learnt { 1.0 } else { one.unlearnt };
+        let joined = if self.with_sky { next_event } else { next_event * one.without_sky };
+        let hit = one.shares[0] * hits;
+        let camera = hit + one.shares[1] * joined + one.shares[4] * equiangular;
+        let light = one.shares[2] * connections + one.shares[3] * lens;
+        Density { all: camera + begun * light, hit }
+    }
+}
+
+impl Density {
+    /// The second moment of `one`, the transmittance of whose connection is `expected` times what it was found to be.
+    #[inline(always)]
+    pub(super) fn square(&self, one: &Weighed, expected: f32) -> f64 {
+        let hit = self.hit / self.all.max(f32::MIN_POSITIVE);
+        one.moment / f64::from(self.all) * f64::from(1.0 + (expected - 1.0) * hit)
+    }
+}
+
+/// What camera subpaths of a pixel bring.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Sums {
+    pub sum: f64,
+    pub square: f64,
+}
+
+/// Contributions of camera subpaths, one subpath after the other.
+pub(super) struct Subpaths {
+    pixels: Vec<Sums>,
+    /// The last one: its number, and its pixel among those that have samples.
+    sample: u32,
+    pixel: u32,
+    sum: f64,
+    /// The same where longer paths follow.
+    before: f64,
+}
+
+impl Subpaths {
+    /// None yet, of so many `pixels`.
+    pub(super) fn new(pixels: usize) -> Self {
+        let none = u32::MAX;
+        Self { pixels: vec![Sums::default(); pixels], sample: none, pixel: none, sum: 0.0, before: 0.0 }
+    }
+
+    /// Adds a contribution, which is no shorter than those before of its subpath, and is `value` where walks get as far as they
+    /// did. Returns what products with those before add to the second moment.
+    #[inline(always)]
+    pub(super) fn add(&mut self, found: &Found, one: &Weighed, value: f32) -> f64 {
+        if self.sample != found.sample {
+            self.close();
+            (self.sample, self.pixel, self.sum, self.before) = (found.sample, found.pixel, 0.0, 0.0);
+        }
+        let arriving = f64::from(value * one.passed_own);
+        let products = 2.0 * arriving * self.before;
+        self.sum += arriving;
+        self.before += f64::from(value / one.passed);
+        products
+    }
+
+    /// Those of each pixel.
+    pub(super) fn finish(mut self) -> Vec<Sums> {
+        self.close();
+        self.pixels
+    }
+
+    fn close(&mut self) {
+        if let Some(sums) = self.pixels.get_mut(self.pixel as usize) {
+            (sums.sum, sums.square) = (sums.sum + self.sum, sums.square + self.sum * self.sum);
+        }
+    }
+}
