@@ -3,7 +3,7 @@
 use super::sensors;
 use crate::{
     bsdf,
-    description::{Library, Object, Params, Position, Table, params::Child, table},
+    description::{Library, Object, Params, Table, params::Child, table},
     emitter,
     error::{Error, Result},
     format::{plugins, references, tags},
@@ -75,7 +75,7 @@ impl<'a> Sections<'a> {
         }
         params.finish()?;
         let sensor = match children.as_slice() {
-            [] => return Err(without_sensor(root)),
+            [] => return Err(sensors::without_sensor(root)),
             [sensor, ..] => sensor.object,
         };
         sensors::tell(&children, library);
@@ -146,12 +146,4 @@ fn check_idle(definitions: &[Child<'_>], root: &Object, library: &Library, time:
         }
     }
     Ok(())
-}
-
-fn without_sensor(root: &Object) -> Error {
-    let remedy = match root.location.position {
-        Position::Text { .. } => "add <sensor type=\"perspective\">...</sensor>",
-        Position::Path(_) => "add \"camera\": {\"type\": \"perspective\", ...}",
-    };
-    Error::new(&root.location, "a sensor in the scene", "none", remedy)
 }

@@ -2,7 +2,7 @@
 
 use super::batch;
 use crate::{
-    description::{Library, Object, Value, params::Child, suggest},
+    description::{Library, Object, Position, Value, params::Child, suggest},
     error::{Error, Result},
     sensor,
 };
@@ -23,11 +23,12 @@ pub fn only(root: &Object, wanted: &str) -> Result<Object> {
     Ok(root)
 }
 
-/// What `--sensor` calls each sensor of `root`: its id, or its number.
+/// What `--sensor` calls each sensor of `root`, which has one or more: its id, or its number.
 pub fn names(root: &Object) -> Result<Vec<String>> {
     let root = batch::expand(root)?;
     let name = |(number, sensor): (usize, &Object)| sensor.id.clone().unwrap_or_else(|| number.to_string());
-    Ok(sensors(&root).enumerate().map(name).collect())
+    let names: Vec<String> = sensors(&root).enumerate().map(name).collect();
+    if names.is_empty() { Err(without_sensor(&root)) } else { Ok(names) }
 }
 
 /// Says which of several `sensors` is rendered.
@@ -70,4 +71,13 @@ fn unknown(root: &Object, wanted: &str, ids: &[Option<String>]) -> Error {
         known => suggest(wanted, "known ids", known),
     };
     Error::new(&root.location, expected, format!("--sensor {wanted}"), remedy)
+}
+
+/// Says that `root` has no sensor.
+pub(super) fn without_sensor(root: &Object) -> Error {
+    let remedy = match root.location.position {
+        Position::Text { .. } => "add <sensor type=\"perspective\">...</sensor>",
+        Position::Path(_) => "add \"camera\": {\"type\": \"perspective\", ...}",
+    };
+    Error::new(&root.location, "a sensor in the scene", "none", remedy)
 }

@@ -501,6 +501,15 @@ fn one_of_several_sensors_is_rendered() {
     sandbox.run(&format!("{kept} --spp 2 --resume --sensor 1")).refuses(&["sensor = \"1\""]);
 }
 
+/// The year after has no such day.
+#[test]
+fn a_timed_sky_may_start_on_the_29th_of_february() {
+    let leap = json!({"type": "timed_sunsky", "start_year": 2024, "start_month": 2, "start_day": 29, "sky_scale": 0});
+    let sandbox =
+        Sandbox::with_scene(&scene(&[("camera", camera([0.0; 3], [0.0, 0.0, 9.0], 1)), ("sky", leap)]));
+    sandbox.run("info scene.json").ends(0);
+}
+
 /// Each has its part of the batch's film, whatever its own.
 #[test]
 fn all_sensors_of_a_batch_are_rendered() {
@@ -514,9 +523,12 @@ fn all_sensors_of_a_batch_are_rendered() {
         assert_eq!(sandbox.channels(file)["R"], [light; 6], "{file}");
     }
     sandbox.run("render scene.json --sensor all --report r.json").refuses(&["--report", "one sensor"]);
+    sandbox.run("render scene.json --sensor all --json").refuses(&["--json", "one sensor"]);
     sandbox.run("render scene.json --sensor away").ends(0);
     assert_eq!(sandbox.channels("scene.exr")["R"], [0.0; 6]);
     sandbox.run("render scene.json --sensor all -o /dev/null").refuses(&["device", "one sensor"]);
+    let sandbox = Sandbox::with_scene(&scene(&[("lamp", lamp_ball([0.0; 3], 3.0, 2.0))]));
+    sandbox.run("render scene.json --sensor all").refuses(&["a sensor in the scene", "none"]);
 }
 
 /// Whatever is in their ids.

@@ -20,12 +20,13 @@ pub(super) fn sensor(arguments: &Render) -> Result<Vec<Render>> {
         ("--sums", arguments.sums.is_some()),
         ("--resume", arguments.resume),
         ("--report", arguments.answer.report.is_some()),
+        ("--json", arguments.answer.json),
         ("a device or pipe as output", output::is_stream(&output)),
         ("a scene on standard input", format::is_standard_input(&scene.file)),
     ];
     if let Some((found, _)) = single.into_iter().find(|(_, given)| *given) {
         let remedy = "name one sensor at a time";
-        return Err(Error::new("--sensor all", "nothing but image files to write", found, remedy));
+        return Err(Error::new("--sensor all", "nothing but images to write", found, remedy));
     }
     let root = format::read(&scene.file, &scene.definitions)?;
     let mut renders: Vec<Render> = Vec::new();

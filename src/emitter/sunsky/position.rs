@@ -66,13 +66,18 @@ pub(super) fn towards_sun(params: &Params<'_>) -> Result<DVec3> {
 
 /// Whole days from the 1st of January 2000 to a date; the parameter `name` is its day.
 pub(super) fn whole_day(params: &Params<'_>, name: &str, [year, month, day]: [i64; 3]) -> Result<f64> {
-    let next = if month == 12 { [year + 1, 1, 1] } else { [year, month + 1, 1] };
-    let length = days_since_2000(next) - days_since_2000([year, month, 1]);
-    if day as f64 > length {
+    let length = days_of(year, month);
+    if day > length {
         let expected = format!("a day of that month, from 1 to {length}");
         return Err(params.complain(name, expected, day.to_string()));
     }
     Ok(days_since_2000([year, month, day]))
+}
+
+/// How many days a month has.
+pub(super) fn days_of(year: i64, month: i64) -> i64 {
+    let next = if month == 12 { [year + 1, 1, 1] } else { [year, month + 1, 1] };
+    (days_since_2000(next) - days_since_2000([year, month, 1])) as i64
 }
 
 /// Whole days from the 1st of January 2000, in the Gregorian calendar. A year from March to February has its leap day last.

@@ -6,7 +6,7 @@
 use super::{
     LIGHT, Light, MAP, Sun, SunSky, TO_MAP,
     hosek::{Sky, sun_irradiance},
-    position::{PLACE, Place, whole_day},
+    position::{PLACE, Place, days_of, whole_day},
 };
 use crate::{
     description::{Params, Table, table},
@@ -81,11 +81,11 @@ impl Window {
     fn read(params: &Params<'_>) -> Result<Self> {
         let start =
             [params.integer("start_year")?, params.integer("start_month")?, params.integer("start_day")?];
-        let end = [
-            params.optional_integer("end_year")?.unwrap_or(start[0] + 1),
-            params.optional_integer("end_month")?.unwrap_or(start[1]),
-            params.optional_integer("end_day")?.unwrap_or(start[2]),
-        ];
+        let year = params.optional_integer("end_year")?.unwrap_or(start[0] + 1);
+        let month = params.optional_integer("end_month")?.unwrap_or(start[1]);
+        // A year after the 29th of February there is none.
+        let day = params.optional_integer("end_day")?.unwrap_or(start[2].min(days_of(year, month)));
+        let end = [year, month, day];
         let first = whole_day(params, "start_day", start)?;
         let days = whole_day(params, "end_day", end)? - first;
         let hours = [params.float("window_start_time")?, params.float("window_end_time")?];
