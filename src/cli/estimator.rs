@@ -224,7 +224,7 @@ impl Estimator {
             &setup.scene,
             &setup.film,
             settings,
-            Decided { starts: self.starts, sky: self.sky(setup, settings.options.strategies) },
+            Decided { starts: self.starts, sky: self.sky.map(|_| settings.options.effort.sky) },
         ))
     }
 

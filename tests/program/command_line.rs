@@ -248,6 +248,8 @@ fn sums_know_the_step_that_was_marched_by() {
         let said = sandbox.run(&format!("render scene.json --spp 1 {words}")).ends(0).err();
         assert!(said.contains(&format!("{flag} has no effect")), "{said}");
     }
+    let said = sandbox.run("render scene.json --spp 1 --integrator lt --sky hit").ends(0).err();
+    assert_eq!(said.matches("--sky has no effect").count(), 1, "{said}");
     for (starts, is_learnt) in [("learnt", true), ("emitted", false)] {
         let said =
             sandbox.run(&format!("render scene.json -v --spp 1 --starts {starts} {all}2")).ends(0).err();
