@@ -1,6 +1,6 @@
 //! What measures one number along parallel rays: Mitsuba's `radiancemeter` and `distant`. Their films have one pixel.
 
-use super::{ALL, Orthographic, Projection, SensorRay, Site};
+use super::{ALL, Orthographic, Projection, SensorRay, Site, place_of};
 use crate::{
     description::{Params, Table, params::Child, table},
     error::{Error, Result},
@@ -148,6 +148,14 @@ fn direction(params: &Params<'_>) -> Result<DVec3> {
     }
     let found = || params.complain("direction", "a direction other than 0 0 0", "0 0 0");
     direction.try_normalize().ok_or_else(found)
+}
+
+/// The point that a `distant` sensor aims at, in the file's coordinates; none where that is all of the scene.
+pub(super) fn target(params: &Params<'_>) -> Result<Option<DVec3>> {
+    match params.children("shape", |child| shape::is_shape(child.object))?.first() {
+        None => params.optional_vector("target"),
+        Some(shape) => place_of(shape.object, params.library),
+    }
 }
 
 /// Middle and half axes of a flat `target`, and what lies between them.

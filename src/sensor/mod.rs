@@ -157,17 +157,29 @@ const ALL: &[Parameter] = rows! {
     ignored("shutter_close", "no motion blur"),
 };
 
-/// The sensor's position in the file's coordinates; of one on a shape, that of the shape.
+/// The sensor's position in the file's coordinates; of one on a shape, that of the shape; of a distant one, its target.
 pub fn viewpoint(object: &Object, library: &Library) -> Result<DVec3> {
     let (params, _) = ROWS.read(object, library)?;
-    let params = match object.plugin.as_str() {
-        ON_SHAPE => match params.child("shape")? {
-            Some(child) if shape::ROWS.has(child.object) => shape::ROWS.read(child.object, library)?.0,
-            _ => return Ok(DVec3::ZERO),
-        },
-        _ => params,
+    let given = match object.plugin.as_str() {
+        "radiancemeter" => params.optional_vector("origin")?,
+        "distant" => meter::target(&params)?,
+        ON_SHAPE => {
+            let shape = params.child("shape")?.map(|child| place_of(child.object, library));
+            Some(shape.transpose()?.flatten().unwrap_or(DVec3::ZERO))
+        }
+        _ => None,
     };
-    Ok(params.transform("to_world")?.transform_point3(DVec3::ZERO))
+    let place = || Ok(params.transform("to_world")?.transform_point3(DVec3::ZERO));
+    given.map_or_else(place, Ok)
+}
+
+/// Where `shape` stands in the file's coordinates; none of what is composed.
+fn place_of(shape: &Object, library: &Library) -> Result<Option<DVec3>> {
+    if !shape::ROWS.has(shape) {
+        return Ok(None);
+    }
+    let (params, _) = shape::ROWS.read(shape, library)?;
+    Ok(Some(params.transform("to_world")?.transform_point3(DVec3::ZERO)))
 }
 
 /// The plugin of the sensor that goes inside a shape.

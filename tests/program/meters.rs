@@ -41,6 +41,46 @@ fn a_radiancemeter_sees_one_ray() {
     }
 }
 
+/// Positions are exact around what is measured, however far that is from the origin of the file.
+#[test]
+fn meters_far_from_the_origin_see_as_sharply() {
+    let far = |x: f64| [1e7 + x, 0.0, 0.0];
+    for (x, light) in [(0.3, 3.0), (0.45, 0.0)] {
+        let [start, disc] = [far(x), [1e7 + x, 0.0, 2.0]];
+        let place = json!([{"type": "scale", "value": 1e-3}, {"type": "translate", "value": disc}]);
+        for meter in [
+            json!({"type": "radiancemeter", "origin": [start[0], 0, 4], "direction": [0, 0, -1]}),
+            json!({"type": "distant", "direction": [0, 0, -1], "target": start}),
+            json!({"type": "distant", "direction": [0, 0, -1], "target": {"type": "disk", "to_world": place}}),
+        ] {
+            let parts = [("meter", meter.clone()), ("lamp", lamp_ball(far(0.0), 0.4, 3.0))];
+            let sandbox = Sandbox::with_scene(&scene(&parts));
+            sandbox.run("render scene.json --integrator pt --spp 1").ends(0);
+            assert_eq!(sandbox.channels("scene.exr")["R"], [light], "{meter}");
+        }
+    }
+}
+
+/// Its one pixel has no neighbours that would show it light which few samples find.
+#[test]
+fn a_meter_sees_rare_light_before_it_calls_itself_precise() {
+    let place = json!([{"type": "translate", "value": [0, 0, -4]}]);
+    let floor = json!({"type": "rectangle", "to_world": place, "meter": {"type": "irradiancemeter"}});
+    let sandbox = Sandbox::with_scene(&scene(&[
+        ("floor", floor),
+        ("sky", sky(0.3)),
+        ("lamp", lamp_ball(ORIGIN, 0.3, 5.0)),
+    ]));
+    let found = (0..8).map(|seed| {
+        sandbox.run(&format!("render scene.json --integrator pt --error 0.05 --seed {seed}")).ends(0);
+        sandbox.channels("scene.exr")["R"][0]
+    });
+    let found: Vec<f32> = found.collect();
+    // The lamp hides a part of the sky.
+    let expected = 0.3 * PI + (5.0 - 0.3) * PI * 0.3f32.powi(2) / 16.0 * 0.92;
+    assert!(found.iter().all(|one| (one / expected - 1.0).abs() < 0.15), "{found:?}, not {expected}");
+}
+
 #[test]
 fn a_distant_sensor_sees_its_target_evenly() {
     let flat =

@@ -16,6 +16,10 @@ use std::time::Duration;
 
 /// Passes of a half before it is first examined: variances of fewer are too uncertain.
 pub(in crate::render) const FIRST_LOOK: u64 = 16;
+/// Samples of the whole image in a half before then: pixels that have few neighbours, or none, cannot tell from them that they
+/// lack rare light.
+const FIRST_SAMPLES: u64 = 1024;
+
 /// What a render to a precision knows: two halves of whole passes, and the blocks done of one more. From it the render
 /// goes on as if it had never stopped.
 #[derive(Clone, Debug)]
@@ -46,7 +50,7 @@ impl Halves {
         Self::of(
             [0; 2].map(|_| Half::new(film.len(), 1 + layers)),
             precision,
-            FIRST_LOOK,
+            FIRST_LOOK.max(FIRST_SAMPLES.div_ceil(film.len().max(1) as u64)),
             film.width as usize,
         )
     }
