@@ -18,7 +18,7 @@ pub(super) struct Overview {
     size: Option<[DVec3; 2]>,
     camera: DVec3,
     camera_in: String,
-    /// Media by their names with their greatest extinction (1/m), and whether that is the same everywhere.
+    /// Media by their names with their greatest extinction (1/m), and whether that is the same everywhere and in all directions.
     media: Vec<(String, Spectrum, bool)>,
     /// Optical depths across the view, the least first.
     depths: Vec<f32>,
@@ -32,7 +32,7 @@ impl Overview {
         let Bounds { low, high } = scene.geometry.bounds();
         let medium = |index: usize| {
             let (medium, name) = (&scene.media[index], setup.medium_name(MediumIndex(index as u32)));
-            (name, medium.bound().sigma_t, medium.heterogeneous().is_none())
+            (name, medium.densest(), medium.heterogeneous().is_none() && !medium.depends_on_direction())
         };
         let mut depths = optical_depths(scene, &setup.film, RAYS);
         depths.sort_by(f32::total_cmp);

@@ -95,7 +95,7 @@ impl MediumDescription {
 
     /// The medium, which lies `around` where its volumes do not say so themselves.
     pub fn finish(self, around: MediumBounds, overrides: &MediumOverrides) -> Result<Medium> {
-        let has_flakes = matches!(self.medium.phase, Phase::Sggx(_));
+        let has_flakes = self.medium.depends_on_direction();
         let medium = match self.fields {
             None => overridden(self.medium, overrides),
             Some(fields) => {

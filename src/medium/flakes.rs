@@ -4,7 +4,7 @@
 
 use super::{DistanceSample, MediaProfile, Medium, MediumInterval};
 use crate::{
-    math::{RaySegment, Vec3},
+    math::{RaySegment, Spectrum, Vec3},
     phase::Phase,
 };
 
@@ -55,6 +55,17 @@ impl Medium {
             }
             _ => sample,
         }
+    }
+
+    /// True if extinction is not the same in all directions.
+    pub fn depends_on_direction(&self) -> bool {
+        matches!(self.phase, Phase::Sggx(_))
+    }
+
+    /// The greatest extinction (1/m) that there is along any direction.
+    pub fn densest(&self) -> Spectrum {
+        let sigma_t = self.bound().sigma_t;
+        if let Phase::Sggx(flakes) = &self.phase { sigma_t * flakes.greatest_area() } else { sigma_t }
     }
 
     /// A segment seen so, whatever was compiled.

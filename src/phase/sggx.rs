@@ -67,7 +67,10 @@ impl Sggx {
         let placed = place.instance.matrix3;
         let turn = placed.inverse().transpose() * placed.determinant().abs().cbrt();
         Self::new(turn * symmetric(numbers.map(f64::from)) * turn.transpose()).ok_or_else(|| {
-            let expected = "xx, yy, zz, xy, xz, yz of a positive definite matrix";
+            let [least, most, _] = RANGE;
+            let expected = format!(
+                "xx, yy, zz, xy, xz, yz of a positive definite matrix, the largest from {least:e} to {most:e}"
+            );
             let remedy = "raise xx, yy and zz: the square of each other number is less than the product of the two \
                           in its row and column, and flakes have some thickness";
             Error::new(&grid.object.location, expected, format!("{numbers:?}"), remedy)
@@ -78,6 +81,13 @@ impl Sggx {
     #[cfg(test)]
     pub(super) fn examples() -> Vec<Self> {
         [1.0, 0.3].iter().filter_map(|size| Self::new(DMat3::IDENTITY * *size)).collect()
+    }
+
+    /// What no [`Self::area`] exceeds: by the row sums of S, which is the greatest area itself where S is diagonal.
+    pub fn greatest_area(&self) -> f32 {
+        let matrix = self.0.root.transpose() * self.0.root;
+        let sums = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|row| row.abs().element_sum());
+        sums.into_iter().fold(0.0, f32::max).sqrt()
     }
 
     /// The area that they show, per unit of extinction, to light that flies in unit `direction` or back.
@@ -149,6 +159,16 @@ mod tests {
                 assert!((found / value - 1.0).abs() < 1e-5, "{towards} {outgoing}: {found} for {value}");
             }
         }
+    }
+
+    #[test]
+    fn no_area_exceeds_the_greatest() {
+        let (round, skewed) = (flakes([0.25, 4.0, 1.0, 0.0, 0.0, 0.0]), flakes(SKEWED));
+        assert_eq!(round.greatest_area(), 2.0);
+        let mut stream = Stream::new(3, 0, 0, Purpose::Study);
+        let areas = (0..1000).map(|_| skewed.area(warp::to_sphere(stream.square())));
+        let greatest = areas.fold(0.0, f32::max);
+        assert!((1.0..1.2).contains(&(skewed.greatest_area() / greatest)));
     }
 
     #[test]

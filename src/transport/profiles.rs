@@ -10,7 +10,6 @@ use crate::{
     bsdf::BsdfModel,
     math::{Channels, Spectrum},
     medium::{MediaProfile, Medium},
-    phase::Phase,
     scene::Scene,
 };
 use std::marker::PhantomData;
@@ -153,7 +152,7 @@ impl Needs {
             nulls: nulls || passed || overlap || scene.media_map.nowhere.is_some(),
             infinite: scene.lights.has_parallel() || scene.sensor.is_parallel(),
             emissive: scene.lights.has_media(),
-            flakes: scene.media.iter().any(|medium| matches!(medium.phase, Phase::Sggx(_))),
+            flakes: scene.media.iter().any(Medium::depends_on_direction),
         }
     }
 }

@@ -48,9 +48,9 @@ impl<'a> Builder<'a> {
         };
         let sensors = params.children("sensor", |child| child.object.plugin == ON_SHAPE)?;
         if let Some(sensor) = sensors.first() {
-            let remedy = "put it on a shape that stands in the scene itself";
-            let expected = "an irradiancemeter on one shape";
-            return Err(Error::new(sensor.location, expected, "one on a shape of a group", remedy));
+            let expected = "an irradiancemeter inside a shape that stands in the scene itself";
+            let found = "one in a group of shapes, or a reference to one";
+            return Err(Error::new(sensor.location, expected, found, "move it into such a shape"));
         }
         // One that was built before has been read then.
         if is_read {

@@ -22,7 +22,7 @@ pub(crate) fn check(
     library: &Library,
 ) -> Result<()> {
     for (index, (medium, location)) in media.iter().zip(locations).enumerate() {
-        let densest = medium.bound().sigma_t.max_element();
+        let densest = medium.densest().max_element();
         if densest <= 0.0 {
             continue;
         }

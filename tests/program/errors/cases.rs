@@ -462,6 +462,7 @@ pub(super) fn all() -> Vec<Case> {
         Case::json("flakes that vary", r#""fog": {"type": "homogeneous", "phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "two.vol"}}}"#).beside("two.vol", &(VOXEL.replacen("VOL\x03\x01\0\0\0\x01", "VOL\x03\x01\0\0\0\x02", 1) + &VOXEL[48..].replace('?', "@"))),
         Case::json("flakes by a density", r#""fog": {"type": "homogeneous", "phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "one.vol"}}}"#).beside("one.vol", &VOXEL.replace('\x06', "\x01")),
         Case::json("a density of six channels", r#""fog": {"type": "heterogeneous", "sigma_t": {"type": "gridvolume", "filename": "flakes.vol"}}"#).beside("flakes.vol", VOXEL),
+        Case::json("flakes that show too much", r#""fog": {"type": "sphere", "bsdf": {"type": "null"}, "interior": {"type": "homogeneous", "sigma_t": 10, "phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "wide.vol"}}}}, "sky": {"type": "constant"}"#).beside("wide.vol", &VOXEL.replace('?', "Q")).warned(),
         Case::flakes("flakes that emit", "homogeneous", r#""emission": 1, "#),
         Case::flakes("flakes by steps", "heterogeneous", r#""tracker": "march", "#),
         Case::json("flakes in a blend", r#""fog": {"type": "homogeneous", "phase": {"type": "blendphase", "weight": 0.5, "a": {"type": "hg"}, "b": {"type": "sggx", "S": {"type": "gridvolume", "filename": "flakes.vol"}}}}"#).beside("flakes.vol", VOXEL),
