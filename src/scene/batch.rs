@@ -87,20 +87,22 @@ fn sensors(batch: &Object, library: &Library) -> Result<Vec<Property>> {
     let shared: Vec<Property> = std::iter::once(property("film", film, batch))
         .chain(samplers.first().map(|child| property("sampler", child.object.clone(), batch)))
         .collect();
-    let own = |given: &&Property| {
-        let child = match &given.value {
-            Value::Object(child) => Some(child),
-            Value::Reference(id) => library.find(id),
-            _ => None,
-        };
-        child.is_none_or(|child| !(child.plugin.ends_with("film") || sampler::ROWS.has(child)))
-    };
     let with_film = |child: &Child<'_>| {
-        let kept = child.object.properties.iter().filter(own).cloned();
+        let kept = child.object.properties.iter().filter(|given| !is_of_batch(given, library)).cloned();
         let object = Object { properties: kept.chain(shared.clone()).collect(), ..child.object.clone() };
         property(child.name, named(child, object, library), batch)
     };
     Ok(sensors.iter().map(with_film).collect())
+}
+
+/// True of a film or a sampler, which a camera in a batch has from that.
+fn is_of_batch(given: &Property, library: &Library) -> bool {
+    let child = match &given.value {
+        Value::Object(child) => Some(child),
+        Value::Reference(id) => library.find(id),
+        _ => None,
+    };
+    child.is_some_and(|child| child.plugin.ends_with("film") || sampler::ROWS.has(child))
 }
 
 fn property(name: &str, object: Object, batch: &Object) -> Property {

@@ -220,33 +220,7 @@ impl Forecast {
 
     /// All contributions if walks ended so.
     fn weighed(&self, end: End) -> Vec<Weighed> {
-        let weigh = |(tile, found): &(u32, Found)| {
-            let passed = found.ends.passed(end, self.survival);
-            // Of all vertices between, both walks together went on from one less where they were connected to an emitter or
-            // the lens, and from two less where they were connected to each other.
-            let of_one = found.ends.passed_one(end, self.survival);
-            let [hits, next_event, connections, lens, equiangular] = found.shares;
-            let shares = [
-                hits,
-                next_event / of_one,
-                connections / (of_one * of_one),
-                lens / of_one,
-                equiangular / of_one,
-            ];
-            let passed_own = shares[found.kind as usize] / found.shares[found.kind as usize];
-            let (moment, value) = (found.square / f64::from(passed), found.square.sqrt() as f32);
-            Weighed {
-                tile: *tile,
-                unlearnt: found.unlearnt,
-                without_sky: found.without_sky,
-                moment,
-                shares,
-                value,
-                passed,
-                passed_own,
-            }
-        };
-        self.found.iter().map(weigh).collect()
+        self.found.iter().map(|(tile, found)| Weighed::of(*tile, found, end, self.survival)).collect()
     }
 
     /// The squared relative errors of the pixels of each tile that was seen, added up.

@@ -1,7 +1,7 @@
 //! What contributions of a pilot would add to second moments under other counts and ends; see [`super::forecast`].
 
-use super::record::Found;
-use crate::transport::strategy::StrategyKind;
+use super::{End, record::Found};
+use crate::{settings::options::Survival, transport::strategy::StrategyKind};
 
 /// A contribution under one survival: its tile, its second moment, and the parts of strategies in its density.
 pub(super) struct Weighed {
@@ -16,6 +16,29 @@ pub(super) struct Weighed {
     pub passed: f32,
     /// The same of the strategy that brought it.
     pub passed_own: f32,
+}
+
+impl Weighed {
+    /// `found` in `tile`, if walks ended by `end` rather than by `before`.
+    pub(super) fn of(tile: u32, found: &Found, end: End, before: Survival) -> Self {
+        let passed = found.ends.passed(end, before);
+        // Of all vertices between, both walks together went on from one less where they were connected to an emitter or the lens,
+        // and from two less where they were connected to each other.
+        let of_one = found.ends.passed_one(end, before);
+        let [hits, next_event, connections, lens, equiangular] = found.shares;
+        let shares =
+            [hits, next_event / of_one, connections / (of_one * of_one), lens / of_one, equiangular / of_one];
+        Self {
+            tile,
+            unlearnt: found.unlearnt,
+            without_sky: found.without_sky,
+            moment: found.square / f64::from(passed),
+            shares,
+            value: found.square.sqrt() as f32,
+            passed,
+            passed_own: shares[found.kind as usize] / found.shares[found.kind as usize],
+        }
+    }
 }
 
 /// How often strategies run, by kind.
