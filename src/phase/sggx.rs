@@ -35,7 +35,7 @@ const RANGE: [f64; 3] = [1e-12, 1e12, 1e-8];
 
 impl Sggx {
     pub(super) const TABLE: Table = table! {
-        "Specular microflakes (Heitz et al. 2015): mirrors that lie as the surface of an ellipsoid does. The area that they show scales the medium's extinction.";
+        "Specular microflakes (Heitz et al. 2015): mirrors whose normals are distributed as those of an ellipsoid. The area that they show scales the medium's extinction.";
         object("S", "volume", "A `gridvolume` of 6 channels: xx, yy, zz, xy, xz, yz of a positive definite matrix, the same everywhere; n S n is the squared area seen along n.").required(),
     };
 

@@ -44,8 +44,8 @@ pub(super) const DISTANT: Table = table! {
     "The mean radiance along parallel rays from outside of the scene, along +z before `to_world`. Its film has one pixel.";
     transform("to_world", "Turns the direction."),
     vector("direction", "", Optional, "In place of `to_world`: where the rays go."),
-    vector("target", "m", Said("all of the scene"), "The point that the one ray meets; or a rectangle or disk, which they meet evenly."),
-    nested("shape", Optional, "The `target`: a rectangle or disk, which itself is not in the scene.");
+    vector("target", "m", Said("all of the scene"), "A point that one ray goes through, or a rectangle or disk that rays cover evenly."),
+    nested("shape", Optional, "The `target`: a rectangle or disk. It is not part of the scene.");
     ALL
 };
 

@@ -26,7 +26,7 @@ pub(super) fn sensor(arguments: &Render) -> Result<Vec<Render>> {
     ];
     if let Some((found, _)) = single.into_iter().find(|(_, given)| *given) {
         let remedy = "name one sensor at a time";
-        return Err(Error::new("--sensor all", "nothing but images to write", found, remedy));
+        return Err(Error::new("--sensor all", "options that several images can share", found, remedy));
     }
     let root = format::read(&scene.file, &scene.definitions)?;
     let mut renders: Vec<Render> = Vec::new();

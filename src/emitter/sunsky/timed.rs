@@ -52,7 +52,7 @@ impl SunSky {
         integer("start_day", within(1.0, 31.0), Is(1.0), "First day."),
         integer("end_year", within(1.0, 9999.0), Said("`start_year` + 1"), "Year of the day after the last."),
         integer("end_month", within(1.0, 12.0), Said("`start_month`"), "Month of the day after the last."),
-        integer("end_day", within(1.0, 31.0), Said("`start_day`"), "The day after the last; the first day itself: that day."),
+        integer("end_day", within(1.0, 31.0), Said("`start_day`"), "The day after the last. The first day itself stands for that one day."),
         number("window_start_time", "h", within(0.0, 24.0), Is(7.0), "Hour at which the mean begins each day."),
         number("window_end_time", "h", within(0.0, 24.0), Is(19.0), "Hour at which it ends."),
         silent("shutter_open", "the mean is over all of the time, as where the sensor has the same shutter"),
