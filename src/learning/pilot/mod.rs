@@ -413,7 +413,7 @@ mod tests {
             expected: 1.0,
             sample,
         };
-        let tile = Tile { pixels: 1.0, samples: 1.0, mean: 0.7, ..Tile::default() };
+        let tile = Tile { pixels: 1.0, samples: 1.0, mean: 0.7 };
         let alone = |kind| StrategyKind::each(|one| if one == kind { 1.0 } else { 0.0 });
         let corner = |tile| if tile == 7 { StrategyKind::Lens } else { StrategyKind::EmitterHit };
         let found = (0..100).map(|tile| (tile, found(tile, corner(tile), alone(corner(tile))))).collect();
