@@ -26,7 +26,7 @@ pub(super) fn table(report: &Report) -> String {
         "            It is time x error, with the same allowance for rare bright paths in all.".to_owned(),
     );
     lines.push(format!(
-        "            With light subpaths, longer walks must be {WORTHWHILE} times better; so must equiangular sampling; learnt starts {LEARNT} times."
+        "            Longer walks beside light subpaths, and equiangular sampling, must be {WORTHWHILE} times better, learnt starts {LEARNT} times."
     ));
     lines.join("\n")
 }

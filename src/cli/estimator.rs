@@ -82,7 +82,7 @@ pub struct Estimator {
     #[arg(long, value_name = "NAME", value_parser = one_of(&STARTS), help_heading = heading::STUDIES)]
     pub starts: Option<bool>,
 
-    /// How light of the sky is found, or of whatever else surrounds a scene that has other emitters too
+    /// Which strategies find the light of the sky, in scenes that have other emitters too
     /// [default: a pilot decides; next-event with --strategies]
     ///
     /// next-event: camera subpaths hit it, and the strategy next-event connects to it; hit: they hit it, and next-event is left to
