@@ -136,8 +136,8 @@ impl Part {
     fn image(&mut self, setup: &Setup) -> Result<Image> {
         let (now, settings) = made_again(&self.render, setup)?;
         must_equal(&self.path, &self.made, &now)?;
-        let Setup { scene, film, integrator, .. } = setup;
-        Ok(render::go_on(scene, film, &settings, &integrator.layers, &mut self.sums, &mut |_, _| {}))
+        let Setup { film, integrator, .. } = setup;
+        render::go_on(setup, film, &settings, &integrator.layers, &mut self.sums, &mut |_, _| {})
     }
 }
 

@@ -22,7 +22,7 @@ use crate::{
     bsdf::Transport,
     math::Vec3,
     sampling::{Basis, Cells, Stream, cells::Keyed, quadtree::limit},
-    scene::lights::Starts,
+    scene::lights::{Lights, Starts},
 };
 use directions::{Directions, ENOUGH};
 use places::Places;
@@ -43,6 +43,12 @@ pub struct Learnt {
 }
 
 impl Learnt {
+    /// The same for a scene with `lights`, at another time.
+    pub fn fitting(self, lights: &Lights) -> Self {
+        let starts = self.starts.and_then(|starts| starts.fitting(lights)).map(Arc::new);
+        Self { starts, ..self }
+    }
+
     /// Memory that all of it takes (bytes).
     pub fn bytes(&self) -> usize {
         let starts = self.starts.as_deref().map_or(0, Starts::bytes);

@@ -8,7 +8,8 @@
 //! What light subpaths contribute to the film is a mean over passes too, of every pixel at once: it ends for
 //! a half where the last pixel of the other half has converged.
 
-use super::{image::Progress, instrument::Instrument, monitor::Stopwatch, sums::halves::Halves};
+use super::{image::Progress, monitor::Stopwatch, subject::Stage, sums::halves::Halves};
+use crate::error::Result;
 use std::time::Duration;
 
 /// Passes up to the next check over those up to the last: few checks, so that chance has few opportunities to
@@ -17,7 +18,7 @@ const GROWTH: f64 = 1.25;
 
 /// A render to a precision at work.
 pub(super) struct Adaptive<'a, 's> {
-    pub instrument: &'a Instrument<'s>,
+    pub stage: &'a Stage<'s>,
     pub stopwatch: &'a Stopwatch,
     /// Called now and then; what it sees at the end is that from which the render can go on.
     pub watch: &'a mut dyn FnMut(Progress, &Halves),
@@ -25,43 +26,50 @@ pub(super) struct Adaptive<'a, 's> {
 
 impl Adaptive<'_, '_> {
     /// Goes on from `halves` until every pixel has converged or the budget is spent.
-    pub(super) fn run(mut self, halves: &mut Halves) {
-        let before = halves.elapsed + self.instrument.settings.budget.spent;
+    pub(super) fn run(mut self, halves: &mut Halves) -> Result<()> {
+        let before = halves.elapsed + self.stage.instrument.settings.budget.spent;
         while halves.active.contains(&true) {
-            if !self.advance(halves, before) {
+            if !self.advance(halves, before)? {
                 self.tell(halves, true);
                 // Not what the checks of a render that goes on would see: they come after other numbers of passes.
-                return halves.look();
+                halves.look();
+                return Ok(());
             }
             halves.look();
             halves.goal = (halves.goal + 1).max((halves.goal as f64 * GROWTH) as u64);
         }
         self.tell(halves, true);
+        Ok(())
     }
 
     /// Renders until both halves have passes up to the next check; false if the budget ends before. An unfinished pass is
     /// left out of the image, unless it is the first.
-    fn advance(&mut self, halves: &mut Halves, before: Duration) -> bool {
-        let (budget, count) = (self.instrument.settings.budget, self.instrument.compiled.blocks().count());
+    fn advance(&mut self, halves: &mut Halves, before: Duration) -> Result<bool> {
+        let (stage, stopwatch) = (self.stage, self.stopwatch);
+        let (budget, count) = (stage.instrument.settings.budget, stage.instrument.compiled.blocks().count());
         let end = budget.samples_per_pixel.unwrap_or(u64::MAX).min(2 * halves.goal);
-        let tasks = halves.passes() as usize * count + halves.blocks..end as usize * count;
-        let (instrument, stopwatch) = (self.instrument, self.stopwatch);
         let is_over = || budget.is_over(stopwatch.elapsed());
         // Which pixels are active changes at checks only.
         let active = halves.active.clone();
-        let render = |pass, block| instrument.render(pass, block, &|pixel: usize| active[pixel]);
-        let done = instrument.work_in_turn(
-            tasks.clone(),
-            |task| task / count,
-            is_over,
-            render,
-            |_, outcomes| {
-                outcomes.iter().for_each(|outcome| halves.add(outcome, count));
-                halves.elapsed = before + stopwatch.elapsed();
-                self.tell(halves, false);
-            },
-        );
-        done >= tasks.len() && end == 2 * halves.goal
+        while halves.passes() < end {
+            let first = halves.passes();
+            let is_done = stage.show(first, |instrument, most| {
+                let last = end.min(first.saturating_add(most as u64)) as usize;
+                let tasks = first as usize * count + halves.blocks..last * count;
+                let render = |pass, block| instrument.render(pass, block, &|pixel: usize| active[pixel]);
+                let pass = |task| task / count;
+                let done = instrument.work_in_turn(tasks.clone(), pass, is_over, render, |_, outcomes| {
+                    outcomes.iter().for_each(|outcome| halves.add(outcome, count));
+                    halves.elapsed = before + stopwatch.elapsed();
+                    self.tell(halves, false);
+                });
+                done >= tasks.len()
+            })?;
+            if !is_done {
+                return Ok(false);
+            }
+        }
+        Ok(end == 2 * halves.goal)
     }
 
     fn tell(&mut self, halves: &Halves, is_last: bool) {

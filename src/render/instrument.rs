@@ -18,7 +18,10 @@ use crate::{
         pass::{Outcome, Pass},
     },
     scene::Scene,
-    transport::Interaction,
+    transport::{
+        Interaction, Options,
+        profiles::{Needs, ProfileName},
+    },
 };
 use rayon::prelude::*;
 use std::{
@@ -76,6 +79,25 @@ impl<'a> Instrument<'a> {
         let compiled = compiled::choose(scene, film, settings, learnt, per_block);
         let (settings, later, sorter) = (*settings, Default::default(), None);
         Self { scene, film, settings, compiled, learning, later, per_block, sorter }
+    }
+
+    /// One that sees `scene`, the same at another time, for `pass`, by what is learnt for that. What moved out of its place
+    /// costs precision, not truth.
+    pub(super) fn seeing<'b>(&self, scene: &'b Scene, pass: usize) -> Instrument<'b>
+    where
+        'a: 'b,
+    {
+        let Self { film, per_block, .. } = *self;
+        let Options { heuristic, hide_emitters, .. } = self.settings.options;
+        let profile = match self.settings.profile {
+            ProfileName::Everything => ProfileName::Everything,
+            _ => ProfileName::leanest(Needs::of(scene, hide_emitters)).weighing(heuristic),
+        };
+        let settings = Settings { profile, ..self.settings };
+        let learnt = training::learn_rounds(self.scene, film, &self.settings, self.rounds_for(pass));
+        let compiled = compiled::choose(scene, film, &settings, learnt.fitting(&scene.lights), per_block);
+        let (learning, later) = (Learning::ToBegin, Default::default());
+        Instrument { scene, film, settings, compiled, learning, later, per_block, sorter: None }
     }
 
     /// The same whose blocks have the layers among `layers` that contributions are sorted into.

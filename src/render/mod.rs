@@ -13,16 +13,18 @@ mod monitor;
 mod primary;
 pub mod progressive;
 mod seen;
+mod subject;
 pub mod sums;
 mod turns;
 
 pub use crate::passes::Settings;
 pub use image::{Image, Precision, Progress, Reached, Snapshot};
+pub use subject::Subject;
 
 use crate::{
+    error::Result,
     film::{Channel, Film, accumulator::Accumulator, layer::Layer},
     passes::budget::Budget,
-    scene::Scene,
     settings::integrator::FogSettings,
     transport::{Algorithm, Heuristic, Options, Strategies},
 };
@@ -33,96 +35,101 @@ use known::{Known, late};
 use monitor::{Monitor, Stopwatch};
 use seen::Seen;
 use std::time::{Duration, Instant};
+use subject::Stage;
 use sums::{AnySums, Halves, Kept, Sums, samples::Samples};
 
-/// Renders `scene` onto `film`, reporting to `progress` now and then.
-pub fn render(scene: &Scene, film: &Film, settings: &Settings, progress: &mut dyn FnMut(Progress)) -> Image {
-    render_layers(scene, film, settings, &[], progress)
+/// Renders `subject` onto `film`, reporting to `progress` now and then.
+pub fn render<'a>(
+    subject: impl Into<Subject<'a>>,
+    film: &Film,
+    settings: &Settings,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Image> {
+    render_layers(subject, film, settings, &[], progress)
 }
 
-/// Renders `scene` onto `film`, and `layers` with it.
-pub fn render_layers(
-    scene: &Scene,
+/// Renders `subject` onto `film`, and `layers` with it.
+pub fn render_layers<'a>(
+    subject: impl Into<Subject<'a>>,
     film: &Film,
     settings: &Settings,
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
-) -> Image {
+) -> Result<Image> {
     let mut sums = AnySums::new(film, layers, None);
-    go_on(scene, film, settings, layers, &mut sums, &mut |reached, _| progress(reached))
+    go_on(subject, film, settings, layers, &mut sums, &mut |reached, _| progress(reached))
 }
 
-/// Renders `scene` onto `film`, and shows the image after each of `marks` (samples per pixel, in growing order, none
+/// Renders `subject` onto `film`, and shows the image after each of `marks` (samples per pixel, in growing order, none
 /// beyond the budget).
-pub fn render_in_steps(
-    scene: &Scene,
+pub fn render_in_steps<'a>(
+    subject: impl Into<Subject<'a>>,
     film: &Film,
     settings: &Settings,
     marks: &[u64],
     progress: &mut dyn FnMut(Progress),
     show: &mut dyn FnMut(Snapshot),
-) -> Image {
+) -> Result<Image> {
     let mut monitor = Monitor { watch: &mut |reached, _| progress(reached), marks, show };
-    dispatch(scene, film, settings, Mode::Budget(&mut Sums::new(film, false, 0)), &[], &mut monitor)
+    dispatch(subject.into(), film, settings, Mode::Budget(&mut Sums::new(film, false, 0)), &[], &mut monitor)
 }
 
-/// Renders `scene` onto `film`, and `layers` with it, until every pixel is known with `precision` or the budget of
+/// Renders `subject` onto `film`, and `layers` with it, until every pixel is known with `precision` or the budget of
 /// `settings` is spent. Layers of moments need passes over all pixels and are left out.
-pub fn render_to_precision(
-    scene: &Scene,
+pub fn render_to_precision<'a>(
+    subject: impl Into<Subject<'a>>,
     film: &Film,
     settings: &Settings,
     precision: Precision,
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
-) -> Image {
+) -> Result<Image> {
     let mut sums = AnySums::new(film, layers, Some(precision));
-    go_on(scene, film, settings, layers, &mut sums, &mut |reached, _| progress(reached))
+    go_on(subject, film, settings, layers, &mut sums, &mut |reached, _| progress(reached))
 }
 
 /// Goes on from `sums`, which are of the same scene, film, layers and settings (but for the budget). `watch` sees the
 /// progress and the sums now and then.
-pub fn go_on(
-    scene: &Scene,
+pub fn go_on<'a>(
+    subject: impl Into<Subject<'a>>,
     film: &Film,
     settings: &Settings,
     layers: &[Layer],
     sums: &mut AnySums,
     watch: &mut dyn FnMut(Progress, &dyn Kept),
-) -> Image {
+) -> Result<Image> {
     match sums {
         AnySums::Samples(sums) => {
             let watch = &mut |progress, sums: &Sums| watch(progress, sums);
             let mut monitor = Monitor { watch, marks: &[], show: &mut |_| {} };
-            dispatch(scene, film, settings, Mode::Budget(sums), layers, &mut monitor)
+            dispatch(subject.into(), film, settings, Mode::Budget(sums), layers, &mut monitor)
         }
         AnySums::Adaptive(halves) => {
             let (stopwatch, started) = (Stopwatch::start(), Instant::now());
-            let instrument =
-                &Instrument::new(scene, film, settings).sorting(layers).with_precision(halves.precision);
+            let stage = &Stage::new(subject.into(), film, settings, layers, Some(halves.precision));
             let watch = &mut |progress, halves: &Halves| watch(progress, halves);
-            Adaptive { instrument, stopwatch: &stopwatch, watch }.run(halves);
-            finish(instrument, started, halves, layers)
+            Adaptive { stage, stopwatch: &stopwatch, watch }.run(halves)?;
+            finish(stage, started, halves, layers)
         }
     }
 }
 
-/// Shows `scene` on `film` as a preview that looks like `fog`, and `layers` with it. Of the options only the
+/// Shows `subject` on `film` as a preview that looks like `fog`, and `layers` with it. Of the options only the
 /// visibility of emitters counts.
-pub fn preview(
-    scene: &Scene,
+pub fn preview<'a>(
+    subject: impl Into<Subject<'a>>,
     film: &Film,
     settings: &Settings,
     fog: &FogSettings,
     layers: &[Layer],
     progress: &mut dyn FnMut(Progress),
-) -> Image {
+) -> Result<Image> {
     let (algorithm, strategies) = (Algorithm::Fog, Strategies::NONE);
     let options = Options { algorithm, strategies, heuristic: Heuristic::Balance, ..settings.options };
     let watch = &mut |reached, _: &Sums| progress(reached);
     let mut monitor = Monitor { watch, marks: &[], show: &mut |_| {} };
     let mode = Mode::Preview(fog, &mut Sums::new(film, layers.iter().any(Layer::needs_squares), 0));
-    dispatch(scene, film, &Settings { options, ..*settings }, mode, layers, &mut monitor)
+    dispatch(subject.into(), film, &Settings { options, ..*settings }, mode, layers, &mut monitor)
 }
 
 /// What a render computes from its samples.
@@ -134,99 +141,106 @@ enum Mode<'a> {
 }
 
 fn dispatch(
-    scene: &Scene,
+    subject: Subject<'_>,
     film: &Film,
     settings: &Settings,
     mode: Mode<'_>,
     layers: &[Layer],
     monitor: &mut Monitor<'_>,
-) -> Image {
+) -> Result<Image> {
     let (stopwatch, started) = (Stopwatch::start(), Instant::now());
-    let instrument = Instrument::new(scene, film, settings).sorting(layers);
-    let (preview, sums) = match mode {
-        Mode::Preview(fog, sums) => (Some(Preview::of(&*instrument.compiled, fog, settings)), sums),
+    let stage = Stage::new(subject, film, settings, layers, None);
+    let (fog, sums) = match mode {
+        Mode::Preview(fog, sums) => (Some(fog), sums),
         Mode::Budget(sums) => (None, sums),
     };
-    accumulate(&instrument, preview.as_ref(), sums, stopwatch, monitor);
+    accumulate(&stage, fog, sums, stopwatch, monitor)?;
     let image = sums.image();
-    let seen = primary::Pass::new(film, layers).run(
-        &instrument,
-        image.samples_per_pixel.max(1),
-        late(settings, started),
-    );
+    let passes = image.samples_per_pixel.max(1);
+    let seen = primary::Pass::new(film, layers).run(&stage, passes, late(settings, started))?;
     let known = Known { pixels: &image.pixels, passes: &sums.accumulator, seen: &seen };
     let layers = known.channels(layers, |plane| sums.plane(plane));
-    Image { alpha: seen.alpha, layers, ..image }
+    Ok(Image { alpha: seen.alpha, layers, ..image })
 }
 
 /// The image of an adaptive render that began at `started`, with alpha, `layers`, and one more that shows how many samples
 /// its pixels took.
-fn finish(instrument: &Instrument<'_>, started: Instant, halves: &Halves, layers: &[Layer]) -> Image {
+fn finish(stage: &Stage<'_>, started: Instant, halves: &Halves, layers: &[Layer]) -> Result<Image> {
+    let instrument = &stage.instrument;
     let seen = Seen::new(instrument);
     let image = Image { noise: halves.noise(&|pixel| seen.of(pixel)), ..halves.image() };
     let (passes, is_over) = (image.samples_per_pixel.max(1), late(&instrument.settings, started));
-    let seen = primary::Pass::new(instrument.film, layers).run(instrument, passes, is_over);
+    let seen = primary::Pass::new(instrument.film, layers).run(stage, passes, is_over)?;
     let known = Known { pixels: &image.pixels, passes: &Accumulator::new(0), seen: &seen };
     let mut layers = known.channels(layers, |plane| halves.plane(plane));
     let samples = image.reached.iter().flat_map(|reached| &reached.samples);
     layers.push(Channel { name: "samples.N".to_owned(), values: samples.map(|n| *n as f32).collect() });
-    Image { alpha: seen.alpha, layers, ..image }
+    Ok(Image { alpha: seen.alpha, layers, ..image })
 }
 
 /// Time between two estimates of the noise, which look at every pixel.
 const NOISE_EVERY: Duration = Duration::from_millis(100);
 
-/// Adds samples until the budget is spent. A preview is shown in place of what the estimator says.
+/// Adds samples until the budget is spent. A preview that looks like `fog` is shown in place of what the estimator says.
 fn accumulate(
-    instrument: &Instrument<'_>,
-    preview: Option<&Preview<'_>>,
+    stage: &Stage<'_>,
+    fog: Option<&FogSettings>,
     sums: &mut Sums,
     mut stopwatch: Stopwatch,
     monitor: &mut Monitor<'_>,
-) {
-    let Instrument { settings: Settings { budget, .. }, compiled, .. } = instrument;
+) -> Result<()> {
+    let Instrument { settings, compiled, .. } = &stage.instrument;
+    let budget = &settings.budget;
     let before = sums.elapsed + budget.spent;
     let queue = Queue::new(budget, sums, compiled.blocks().count());
     let (mut next, mut noted) = (sums.blocks.min(queue.end), Instant::now());
-    let seen = Seen::new(instrument);
+    let seen = Seen::new(&stage.instrument);
     // However long that takes, or no time would be enough to go on.
     if next < queue.end {
-        instrument.learn(queue.sample(next) as usize, &|| false);
+        stage.instrument.learn(queue.sample(next) as usize, &|| false);
     }
-    loop {
+    let mut is_ended = next == queue.end;
+    while !is_ended {
         let passes = (next / queue.per_pass) as u64;
-        let tasks = next..monitor.limit_tasks(queue.end, passes, queue.per_pass);
-        let is_over = || budget.is_over(stopwatch.elapsed());
-        let pass = |task| queue.sample(task) as usize;
-        let render = |pass, block| match preview {
-            None => instrument.render(pass, block, &|_| true),
-            Some(preview) => preview.show(&**compiled, pass, compiled.blocks().pixels(block)),
-        };
-        let done = instrument.work_in_turn(tasks.clone(), pass, is_over, render, |first, outcomes| {
-            for (task, outcome) in (first..).zip(outcomes) {
-                sums.add(queue.sample(task), outcome, queue.per_pass);
-            }
-            if noted.elapsed() > NOISE_EVERY {
-                sums.note_noise(&|pixel| seen.of(pixel));
-                noted = Instant::now();
-            }
-            let elapsed = stopwatch.elapsed();
-            sums.elapsed = before + elapsed;
-            (monitor.watch)(sums.progress(elapsed, false), sums);
-        });
-        next += done;
+        let end = monitor.limit_tasks(queue.end, passes, queue.per_pass);
+        is_ended = stage.show(queue.sample(next), |instrument, most| {
+            let tasks = next..end.min(queue.end_of(next, most));
+            let is_over = || budget.is_over(stopwatch.elapsed());
+            let pass = |task| queue.sample(task) as usize;
+            let preview = fog.map(|fog| Preview::of(&*instrument.compiled, fog, settings));
+            let render = |pass, block| match &preview {
+                None => instrument.render(pass, block, &|_| true),
+                Some(preview) => {
+                    let compiled = &*instrument.compiled;
+                    preview.show(compiled, pass, compiled.blocks().pixels(block))
+                }
+            };
+            let done = instrument.work_in_turn(tasks.clone(), pass, is_over, render, |first, outcomes| {
+                for (task, outcome) in (first..).zip(outcomes) {
+                    sums.add(queue.sample(task), outcome, queue.per_pass);
+                }
+                if noted.elapsed() > NOISE_EVERY {
+                    sums.note_noise(&|pixel| seen.of(pixel));
+                    noted = Instant::now();
+                }
+                let elapsed = stopwatch.elapsed();
+                sums.elapsed = before + elapsed;
+                (monitor.watch)(sums.progress(elapsed, false), sums);
+            });
+            next += done;
+            next == queue.end || done < tasks.len()
+        })?;
         let (elapsed, samples_per_pixel) = (stopwatch.elapsed(), sums.samples.count());
+        sums.elapsed = before + elapsed;
         if next.is_multiple_of(queue.per_pass) && monitor.is_mark(samples_per_pixel) {
             let pixels = || sums.accumulator.mean();
             let elapsed = budget.spent + elapsed;
             stopwatch.hold(|| (monitor.show)(Snapshot { pixels: pixels(), samples_per_pixel, elapsed }));
         }
-        if next == queue.end || done < tasks.len() {
-            sums.elapsed = before + elapsed;
-            sums.note_last_noise(&|pixel| seen.of(pixel));
-            return (monitor.watch)(sums.progress(elapsed, true), sums);
-        }
     }
+    sums.note_last_noise(&|pixel| seen.of(pixel));
+    (monitor.watch)(sums.progress(stopwatch.elapsed(), true), sums);
+    Ok(())
 }
 
 /// The blocks that are to be rendered, numbered over the passes that are missing. Of the first of these, some may be done.
@@ -250,6 +264,11 @@ impl Queue {
             _ => sums.start(queue.sample(0)),
         }
         queue
+    }
+
+    /// Behind the last task of the pass that `task` belongs to, and of as many behind it as makes `passes`.
+    fn end_of(&self, task: usize, passes: usize) -> usize {
+        (task / self.per_pass).saturating_add(passes).saturating_mul(self.per_pass)
     }
 
     /// The number of the sample that `task` belongs to.

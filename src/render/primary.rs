@@ -1,9 +1,10 @@
 //! What primary rays see: alpha, and the layers that describe the first surface. A cheap pass of its own,
 //! only where something requests it, through the same film positions as the camera subpaths.
 
-use super::instrument::Instrument;
+use super::{instrument::Instrument, subject::Stage};
 use crate::{
     bsdf::BsdfModel,
+    error::Result,
     film::{
         Film,
         layer::{Content, Layer, Quantity},
@@ -58,30 +59,25 @@ impl Pass {
     }
 
     /// Traces as many primary rays per pixel as there were `passes`, or fewer once `is_over`, but one at least.
-    pub(super) fn run(&self, instrument: &Instrument<'_>, passes: u64, is_over: impl Fn() -> bool) -> Seen {
-        let Instrument { scene, film, compiled, .. } = instrument;
+    pub(super) fn run(&self, stage: &Stage<'_>, passes: u64, is_over: impl Fn() -> bool) -> Result<Seen> {
+        let film = stage.instrument.film;
         let width = usize::from(self.alpha) + self.quantities.len();
         if !self.alpha && self.quantities.is_empty() {
-            return Seen { alpha: Vec::new(), planes: Vec::new() };
+            return Ok(Seen { alpha: Vec::new(), planes: Vec::new() });
         }
-        let environment = scene.lights.environment.is_some();
         let mut sums = vec![DVec3::ZERO; film.len() * width];
         let mut done = 0;
         while done == 0 || done < passes && !is_over() {
-            sums.par_chunks_mut(width).enumerate().for_each(|(pixel, sums)| {
-                let mut start = compiled.camera_start(done as usize, pixel);
-                let view = View::new(instrument, environment, &start, passes);
-                let alpha = self.alpha.then(|| Vec3::splat(view.alpha(&mut start.stream)));
-                let first = self.interacts().then(|| view.first_interaction(&mut start.stream)).flatten();
-                let values = self.quantities.iter().map(|quantity| match quantity.is_of_interaction() {
-                    true => view.quantity_of(first.as_ref(), *quantity),
-                    false => view.quantity(*quantity),
-                });
-                for (sum, value) in sums.iter_mut().zip(alpha.into_iter().chain(values)) {
-                    *sum += (value * start.weight).as_dvec3();
+            stage.show(done, |instrument, most| {
+                let end = passes.min(done.saturating_add(most as u64));
+                loop {
+                    self.trace(instrument, [done, passes], &mut sums);
+                    done += 1;
+                    if done >= end || is_over() {
+                        break;
+                    }
                 }
-            });
-            done += 1;
+            })?;
         }
         let plane = |item: usize, component: usize| -> Vec<f32> {
             let sums = sums.iter().skip(item).step_by(width);
@@ -91,7 +87,27 @@ impl Pass {
         let planes = self.quantities.iter().enumerate().map(|(i, quantity)| {
             (*quantity, (0..quantity.channels().len()).map(|c| plane(first + i, c)).collect())
         });
-        Seen { alpha: if self.alpha { plane(0, 0) } else { Vec::new() }, planes: planes.collect() }
+        let alpha = if self.alpha { plane(0, 0) } else { Vec::new() };
+        Ok(Seen { alpha, planes: planes.collect() })
+    }
+
+    /// Adds a primary ray of every pixel, that of a `pass` of so many, to `sums`.
+    fn trace(&self, instrument: &Instrument<'_>, [pass, passes]: [u64; 2], sums: &mut [DVec3]) {
+        let environment = instrument.scene.lights.environment.is_some();
+        let width = sums.len() / instrument.film.len();
+        sums.par_chunks_mut(width).enumerate().for_each(|(pixel, sums)| {
+            let mut start = instrument.compiled.camera_start(pass as usize, pixel);
+            let view = View::new(instrument, environment, &start, passes);
+            let alpha = self.alpha.then(|| Vec3::splat(view.alpha(&mut start.stream)));
+            let first = self.interacts().then(|| view.first_interaction(&mut start.stream)).flatten();
+            let values = self.quantities.iter().map(|quantity| match quantity.is_of_interaction() {
+                true => view.quantity_of(first.as_ref(), *quantity),
+                false => view.quantity(*quantity),
+            });
+            for (sum, value) in sums.iter_mut().zip(alpha.into_iter().chain(values)) {
+                *sum += (value * start.weight).as_dvec3();
+            }
+        });
     }
 }
 

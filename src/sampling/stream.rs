@@ -17,6 +17,8 @@ pub enum Purpose {
     Pilot = 3,
     /// Tests and tools.
     Study = 4,
+    /// When a pass sees a scene that moves.
+    Shutter = 5,
 }
 
 /// One sequence of uniform numbers: the coordinates of a point, if it has one, then independent numbers.

@@ -14,6 +14,7 @@ use super::{
     keyframes,
     rebuild::{Before, Parts},
     sections::Sections,
+    shutter::{self, Moving, Shutter},
     smoke::{self, Taken},
     unseen::{self},
 };
@@ -71,6 +72,8 @@ pub struct Setup {
     pub smoke: Vec<Taken>,
     /// What the command line set.
     pub overrides: Overrides,
+    /// How it moves while the shutter is open; none if it stands still.
+    pub(super) moving: Option<Moving>,
     /// What all of it was built from: the description at that time, without smoke.
     pub(super) root: Object,
     /// What became of that.
@@ -100,16 +103,34 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
 /// since is taken from there.
 pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) -> Result<Setup> {
     plugins::check(root)?;
+    let shutter = Shutter::of(root)?;
+    let before = before.map(Before::new).transpose()?;
+    let built = assemble(root, overrides, before.as_ref(), shutter.middle())?;
+    let moves = !shutter.is_instant() && shutter::moves(root);
+    let moving = moves.then(|| Moving { root: root.clone(), shutter });
+    Ok(Setup { moving, ..built })
+}
+
+/// The scene of `setup`, which `root` describes, at so many seconds `after` its time. The origin stays where it is: what does
+/// not move need not be built again, and what was learnt lies where it did.
+pub(super) fn build_moment(root: &Object, overrides: Overrides, setup: &Setup, after: f64) -> Result<Setup> {
+    let before = Before::new(setup)?.in_place();
+    assemble(root, overrides, Some(&before), after)
+}
+
+/// Builds the scene as it is so many seconds `after` its time.
+fn assemble(root: &Object, overrides: Overrides, before: Option<&Before<'_>>, after: f64) -> Result<Setup> {
     let root = &batch::expand(root)?;
-    let root = &keyframes::resolve(root);
+    let root = &keyframes::resolve(root, smoke::time_of(root) + after);
     let (root, smoke) = smoke::expand(root)?;
     let mut library = Library::new(&root)?;
     library.is_strict = overrides.strict;
     let sections = Sections::sort(&root, &library)?;
-    let recentre = sections.viewpoint(&library)?;
-    library.place.set((recentre, sections.time));
-    let before = before.map(Before::new).transpose()?;
-    let mut builder = Builder::new(&library, Place::new(recentre, sections.time), before.as_ref());
+    let kept = before.and_then(|before| before.recentre);
+    let recentre = kept.map_or_else(|| sections.viewpoint(&library), Ok)?;
+    let now = sections.time + after;
+    library.place.set((recentre, now));
+    let mut builder = Builder::new(&library, Place::new(recentre, now), before);
     builder.add_shapes(&root, &sections.shapes)?;
     for child in &sections.emitters {
         builder.emitter(child)?;
@@ -122,7 +143,7 @@ pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) 
     .overridden(&overrides);
     let medium_names = builder.medium_names.clone();
     let medium_overrides = overrides.media.over(integrator.restriction.medium_overrides());
-    let time = builder.place.time;
+    let time = sections.time;
     let parts = std::mem::take(&mut builder.parts);
     let Finished { scene, shape_names, bsdf_names, apart } =
         builder.finish(view.camera, &medium_overrides)?;
@@ -152,6 +173,7 @@ pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) 
         smoke,
         overrides,
         parts,
+        moving: None,
         root: root.into_owned(),
     })
 }

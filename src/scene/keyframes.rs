@@ -1,20 +1,18 @@
 //! The description of a scene at its own time: whatever is keyframed in it has the value of that moment, so that no
 //! builder knows of keyframes (BMA02 sec. 5).
 
-use super::smoke::time_of;
 use crate::{
     description::{Keyframes, Object, Value},
     volume::WIND,
 };
 use std::borrow::Cow;
 
-/// `root` at its own time. That time itself does not change.
-pub fn resolve(root: &Object) -> Cow<'_, Object> {
+/// `root` at `time` (s). Its own time does not change.
+pub fn resolve(root: &Object, time: f64) -> Cow<'_, Object> {
     if !has_any(root) {
         return Cow::Borrowed(root);
     }
     let mut resolved = root.clone();
-    let time = time_of(root);
     for property in resolved.properties.iter_mut().filter(|property| property.name != "time") {
         fill(&mut property.value, time, Keyframes::at);
     }

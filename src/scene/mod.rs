@@ -11,6 +11,7 @@ mod memo;
 mod rebuild;
 mod sections;
 pub mod sensors;
+pub mod shutter;
 pub mod smoke;
 mod surface;
 #[cfg(test)]

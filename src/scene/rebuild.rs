@@ -33,6 +33,8 @@ pub(super) struct Parts {
 /// What was built before.
 pub(super) struct Before<'a> {
     setup: &'a Setup,
+    /// Where the origin is to stay, in the file's coordinates (m); none if it goes with the camera.
+    pub recentre: Option<DVec3>,
     /// What it was built from.
     objects: HashMap<Key<'a>, &'a Object>,
     library: Library,
@@ -72,7 +74,12 @@ impl<'a> Before<'a> {
         let library = Library::new(&setup.root)?;
         let mut objects = HashMap::new();
         collect(&setup.root, &mut objects);
-        Ok(Self { setup, objects, library, known: RefCell::default() })
+        Ok(Self { setup, recentre: None, objects, library, known: RefCell::default() })
+    }
+
+    /// The same for a scene whose origin stays.
+    pub(super) fn in_place(self) -> Self {
+        Self { recentre: Some(self.setup.scene.recentre), ..self }
     }
 
     /// The geometry of then, if it has `shapes` shapes, and what was set apart in it.

@@ -47,7 +47,8 @@ pub fn tell(sensors: &[Child<'_>], library: &Library) {
     }
 }
 
-fn sensors(root: &Object) -> impl Iterator<Item = &Object> {
+/// The sensors of `root`, in file order.
+pub(super) fn sensors(root: &Object) -> impl Iterator<Item = &Object> {
     root.properties.iter().filter_map(|property| sensor_in(&property.value))
 }
 

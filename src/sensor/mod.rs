@@ -153,9 +153,12 @@ const ALL: &[Parameter] = rows! {
     nested("film", Optional, "The image; default: an `hdrfilm`."),
     nested("sampler", Optional, "The number of samples per pixel."),
     nested("medium", Optional, "The medium around the camera; default: found from the boundaries."),
-    ignored("shutter_open", "no motion blur"),
-    ignored("shutter_close", "no motion blur"),
+    number(SHUTTER[0], "s", ANY, Is(0.0), "When the shutter opens, after the scene's `time`."),
+    number(SHUTTER[1], "s", ANY, Is(0.0), "When it closes. What moves in between is blurred."),
 };
+
+/// The two ends of the time for which the shutter is open.
+pub const SHUTTER: [&str; 2] = ["shutter_open", "shutter_close"];
 
 /// The sensor's position in the file's coordinates; of one on a shape, that of the shape; of a distant one, its target.
 pub fn viewpoint(object: &Object, library: &Library) -> Result<DVec3> {

@@ -82,9 +82,9 @@ impl Stage {
 
     /// The same with all layers that the scene's integrator asks for.
     pub(crate) fn render_layers(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Image {
-        let Setup { scene, film, integrator, .. } = &self.setup;
+        let Setup { film, integrator, .. } = &self.setup;
         let settings = self.settings(strategies, samples_per_pixel, seed);
-        let image = render::render_layers(scene, film, &settings, &integrator.layers, &mut |_| {});
+        let image = render::render_layers(&self.setup, film, &settings, &integrator.layers, &mut |_| {}).unwrap();
         assert_eq!(image.faults, Faults::default());
         image
     }

@@ -18,13 +18,13 @@ use tyndall::{
 
 /// Renders to a relative error, and to no more than some samples.
 fn to_precision(stage: &Stage, strategies: Strategies, error: f64, most: Option<u64>, seed: u64) -> Image {
-    let Setup { scene, film, integrator, .. } = &stage.setup;
+    let Setup { film, integrator, .. } = &stage.setup;
     let options = Options { strategies, max_depth: integrator.options.max_depth, ..Options::default() };
     let budget =
         Budget { samples_per_pixel: most, time: most.map(|_| Duration::from_secs(600)), ..Budget::ENDLESS };
     let settings = Settings { options, sampler: Sampler::Independent, budget, seed, profile: stage.profile };
     let precision = Precision { error, confidence: 0.95 };
-    render::render_to_precision(scene, film, &settings, precision, &[], &mut |_| {})
+    render::render_to_precision(&stage.setup, film, &settings, precision, &[], &mut |_| {}).unwrap()
 }
 
 /// A room full of fog with a small lamp: samples are many small ones and few great ones.

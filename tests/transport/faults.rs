@@ -30,7 +30,7 @@ fn stage() -> Stage {
 
 fn image(stage: &Stage, strategies: Strategies) -> Image {
     let settings = stage.settings(strategies, SAMPLES, 3);
-    render::render(&stage.setup.scene, &stage.setup.film, &settings, &mut |_| {})
+    render::render(&stage.setup, &stage.setup.film, &settings, &mut |_| {}).unwrap()
 }
 
 #[test]

@@ -166,7 +166,7 @@ fn groups_add_up_where_pixels_stop_by_precision() {
         let settings = Settings { budget: Budget::samples(spp), ..stage.settings(Strategies::BDPT, 1, 5) };
         let (setup, precision) = (&stage.setup, Precision { error: 0.3, confidence: 0.9 });
         let layers = &setup.integrator.layers;
-        render::render_to_precision(&setup.scene, &setup.film, &settings, precision, layers, &mut |_| {})
+        render::render_to_precision(setup, &setup.film, &settings, precision, layers, &mut |_| {}).unwrap()
     };
     let image = render(2000);
     let reached = image.reached.as_ref().unwrap();

@@ -76,7 +76,7 @@ fn preview(scene: &Value) -> Vec<Spectrum> {
     let options = Options { heuristic: Heuristic::Balance, max_depth: None, ..setup.integrator.options };
     let budget = Budget::samples(2);
     let settings = Settings { options, sampler: Sampler::default(), budget, seed: 1, profile };
-    render::preview(&setup.scene, &setup.film, &settings, &setup.integrator.fog, &[], &mut |_| {}).pixels
+    render::preview(&setup, &setup.film, &settings, &setup.integrator.fog, &[], &mut |_| {}).unwrap().pixels
 }
 
 /// Every pixel of the preview is `expected`, within a relative `error`.

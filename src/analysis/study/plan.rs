@@ -92,7 +92,7 @@ pub fn samples(entry: &Entry, effort: Effort, first_seed: u64) -> Result<u64> {
         Renderer::Own { .. } => {
             let time = Some(Duration::from_secs_f64((PILOT_PART * seconds).clamp(1e-3, 60.0)));
             let budget = Budget { time, ..Budget::samples(PILOT_SAMPLES) };
-            let image = unit::pilot(entry, seed, budget);
+            let image = unit::pilot(entry, seed, budget)?;
             image.map_or(f64::INFINITY, |image| image.elapsed.as_secs_f64() / image.samples())
         }
         Renderer::External(external) => {
@@ -117,7 +117,8 @@ pub fn samples(entry: &Entry, effort: Effort, first_seed: u64) -> Result<u64> {
 pub fn variance(entry: &Entry, first_seed: u64) -> f64 {
     const SAMPLES: u64 = 16;
     let budget = Budget::samples(SAMPLES);
-    let image = unit::pilot(entry, first_seed ^ PILOT_SEED, budget);
+    // What goes wrong here goes wrong again, and is told, where images count.
+    let image = unit::pilot(entry, first_seed ^ PILOT_SEED, budget).ok().flatten();
     image.and_then(|image| image.noise).map_or(f64::NAN, |noise| noise.error * noise.error)
 }
 

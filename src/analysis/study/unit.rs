@@ -131,7 +131,7 @@ pub fn shoot(
             let film = plain_film(entry);
             let all = last as f64 * film.len() as f64;
             let progress = &mut |progress: render::Progress| notify(progress.samples as f64 / all);
-            render::render_in_steps(&entry.setup.scene, &film, &settings, marks, progress, show);
+            render::render_in_steps(&*entry.setup, &film, &settings, marks, progress, show)?;
             Ok(unit(Some(*load_seconds)))
         }
         Renderer::External(external) => {
@@ -143,12 +143,12 @@ pub fn shoot(
 }
 
 /// An image of this program's, with what it says of its own noise; none of other renderers.
-pub fn pilot(entry: &Entry, seed: u64, budget: Budget) -> Option<Image> {
-    let Renderer::Own { settings, .. } = &entry.renderer else { return None };
+pub fn pilot(entry: &Entry, seed: u64, budget: Budget) -> Result<Option<Image>> {
+    let Renderer::Own { settings, .. } = &entry.renderer else { return Ok(None) };
     let settings = settled(settings, seed, budget);
     // Learnt once for all renders of the scene: no sample takes a part of that time.
     training::learn_for(&entry.setup.scene, &plain_film(entry), &settings);
-    Some(render::render(&entry.setup.scene, &plain_film(entry), &settings, &mut |_| {}))
+    render::render(&*entry.setup, &plain_film(entry), &settings, &mut |_| {}).map(Some)
 }
 
 fn settled(settings: &Settings, seed: u64, budget: Budget) -> Settings {

@@ -7,7 +7,9 @@ use crate::{
     error::{Error, Result},
     scene::{
         build::{self, Setup},
-        keyframes, smoke,
+        keyframes,
+        shutter::Shutter,
+        smoke,
     },
 };
 
@@ -27,7 +29,8 @@ impl<'a> Clip<'a> {
     pub(super) fn read(arguments: &'a Render) -> Result<Self> {
         let root = arguments.scene.read()?;
         let root = if arguments.denoise { features::added(root) } else { root };
-        let changes = smoke::has_sequence(&root) || keyframes::has_any(&root);
+        let is_blurred = !Shutter::of(&root)?.is_instant();
+        let changes = smoke::has_sequence(&root) || keyframes::has_any(&root) || is_blurred;
         Ok(Self { arguments, root, rebuilds: arguments.frames.is_some() && changes })
     }
 

@@ -193,7 +193,7 @@ fn check_kept(arguments: &Render, settings: &Settings, target: &Target) -> Resul
 /// Renders one image and writes it; its figures.
 fn shoot(setup: &Setup, task: &Task<'_>, target: &mut Target, label: Option<&str>) -> Result<Value> {
     if let Some(wanted) = task.arguments.progressive() {
-        let (image, shaded) = few_pixels(setup, task, target, wanted, label);
+        let (image, shaded) = few_pixels(setup, task, target, wanted, label)?;
         let is_without_lens = progressive::is_without_lens(&task.arguments.estimator, setup);
         let text = progressive::text(&shaded, is_without_lens);
         let mut made = task.made.clone();
@@ -252,7 +252,7 @@ fn few_pixels(
     target: &Target,
     wanted: render::progressive::Progressive,
     label: Option<&str>,
-) -> (Image, Shaded) {
+) -> Result<(Image, Shaded)> {
     let Setup { scene, film, integrator, .. } = setup;
     let settings = &task.settings;
     let bar = Bar::new(*settings, None, wanted.pixels(film.len()), label);
@@ -282,11 +282,11 @@ fn nothing() -> Written {
 /// Renders one image under a progress bar; where what there is was kept.
 fn watched(setup: &Setup, task: &Task<'_>, target: &Target, label: Option<&str>) -> Result<(Image, Written)> {
     let bar = Bar::new(task.settings, task.precision, setup.film.len(), label);
-    let Setup { scene, film, integrator, .. } = setup;
+    let Setup { film, integrator, .. } = setup;
     let (layers, settings) = (&integrator.layers, &task.settings);
     let done = if settings.options.algorithm == Algorithm::Fog {
         let show = &mut |progress| bar.show(&progress);
-        (render::preview(scene, film, settings, &integrator.fog, layers, show), nothing())
+        (render::preview(setup, film, settings, &integrator.fog, layers, show)?, nothing())
     } else {
         keeping(setup, task, target, &bar)?
     };
@@ -296,7 +296,7 @@ fn watched(setup: &Setup, task: &Task<'_>, target: &Target, label: Option<&str>)
 
 /// Renders one image, from sums that there are and into those that are kept.
 fn keeping(setup: &Setup, task: &Task<'_>, target: &Target, bar: &Bar) -> Result<(Image, Written)> {
-    let Setup { scene, film, integrator, .. } = setup;
+    let Setup { film, integrator, .. } = setup;
     let (arguments, settings, layers) = (task.arguments, &task.settings, &integrator.layers);
     let mut file = sums_file(arguments, target);
     let mut sums = match &mut file {
@@ -306,12 +306,12 @@ fn keeping(setup: &Setup, task: &Task<'_>, target: &Target, bar: &Bar) -> Result
     .unwrap_or_else(|| AnySums::new(film, layers, task.precision));
     let draw = |picture: &dyn Picture| target.draw(film, picture, &task.made);
     let mut keeper = Keeper::new(file, task, &draw);
-    let image = render::go_on(scene, film, settings, layers, &mut sums, &mut |progress, sums| {
+    let image = render::go_on(setup, film, settings, layers, &mut sums, &mut |progress, sums| {
         bar.show(&progress);
         keeper.watch(&progress, sums);
     });
     let kept = keeper.finish();
-    Ok((image, kept.map(|left| (left, sums.kept().samples()))))
+    Ok((image?, kept.map(|left| (left, sums.kept().samples()))))
 }
 
 fn print_kept(file: &Path, samples: &Samples, taken: f64, task: &Task<'_>) {

@@ -18,9 +18,11 @@ use super::{
     instrument::Instrument,
     known::{Known, late},
     primary,
+    subject::Stage,
     sums::Picture,
 };
 use crate::{
+    error::Result,
     film::{Channel, Film, accumulator::Accumulator, layer::Layer},
     math::{DVec3, Spectrum, vec2},
     passes::{Settings, blocks::Blocks, faults::Faults, pass::Outcome},
@@ -107,18 +109,19 @@ pub fn run(
     layers: &[Layer],
     wanted: Progressive,
     watch: &mut dyn FnMut(Progress, &dyn Picture),
-) -> (Image, Shaded) {
+) -> Result<(Image, Shaded)> {
     let started = Instant::now();
-    let instrument = Instrument::of_blocks(GROUP, scene, film, settings);
+    let stage = Stage::still(Instrument::of_blocks(GROUP, scene, film, settings));
+    let instrument = &stage.instrument;
     let fog = fog.map(|fog| Preview::of(&*instrument.compiled, fog, settings));
-    let mut painter = Painter::new(&instrument, fog, wanted, started);
+    let mut painter = Painter::new(instrument, fog, wanted, started);
     painter.paint(watch);
     let image = painter.image();
-    let seen = primary::Pass::new(film, layers).run(&instrument, painter.samples, late(settings, started));
+    let seen = primary::Pass::new(film, layers).run(&stage, painter.samples, late(settings, started))?;
     let known = Known { pixels: &image.pixels, passes: &Accumulator::new(0), seen: &seen };
     let mut layers = known.channels(layers, |_| Vec::new());
     layers.push(painter.counts());
-    (Image { alpha: seen.alpha, layers, ..image }, painter.shaded())
+    Ok((Image { alpha: seen.alpha, layers, ..image }, painter.shaded()))
 }
 
 /// A picture in the making.

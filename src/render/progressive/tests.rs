@@ -169,7 +169,7 @@ fn small(scene: &str, strategies: Strategies, connections: Connections) -> (Setu
 fn made(setup: &Setup, settings: &Settings, method: Method, fraction: f64) -> (Image, Shaded) {
     let fog = (settings.options.strategies == Strategies::NONE).then_some(&setup.integrator.fog);
     let wanted = Progressive { method, fraction };
-    run(&setup.scene, &setup.film, settings, fog, &[], wanted, &mut |_, _| {})
+    run(&setup.scene, &setup.film, settings, fog, &[], wanted, &mut |_, _| {}).unwrap()
 }
 
 const ROOM: &str = "foggy_room.json";
@@ -198,7 +198,7 @@ fn shaded_pixels_are_those_of_a_whole_render() {
         [(Strategies::PT, Connections::Cached), (Strategies::BDPT, Connections::All)]
     {
         let (setup, settings) = small(ROOM, strategies, connections);
-        let whole = render(&setup.scene, &setup.film, &settings, &mut |_| {});
+        let whole = render(&setup.scene, &setup.film, &settings, &mut |_| {}).unwrap();
         for (method, fraction) in [(Method::Straight, 0.2), (Method::Regions, 0.2), (Method::Regions, 1.0)] {
             let (image, _) = made(&setup, &settings, method, fraction);
             let samples = &image.layers.last().unwrap().values;
@@ -218,7 +218,7 @@ fn shaded_pixels_are_those_of_a_whole_render() {
 fn light_subpaths_of_a_few_pixels_do() {
     let (setup, settings) = small("lampbox_up.xml", Strategies::BDPT, Connections::Cached);
     let settings = Settings { budget: Budget::samples(200), ..settings };
-    let whole = render(&setup.scene, &setup.film, &settings, &mut |_| {});
+    let whole = render(&setup.scene, &setup.film, &settings, &mut |_| {}).unwrap();
     let (image, _) = made(&setup, &settings, Method::Straight, 1.0);
     let mean = |image: &Image| image.pixels.iter().map(|pixel| f64::from(pixel.y)).sum::<f64>();
     let (found, expected) = (mean(&image), mean(&whole));

@@ -7,6 +7,7 @@ use crate::{
     film::Film,
     math::{Vec2, Vec3},
     medium::MediumIndex,
+    scene::shutter,
     sensor::{self, Crop, Sensor, Site},
     settings::{
         Overrides, film, only_one,
@@ -56,6 +57,7 @@ impl<'a> Builder<'a> {
         let crop = Crop { film: film.window.full_size, offset: film.window.offset };
         let (shapes, places) = (self.shapes.as_slice(), &self.parts.shapes);
         let sensor = build(&params, &Site { recentre: self.recentre, crop, shapes, places })?;
+        shutter::check(&params)?;
         params.finish()?;
         let middle = film.window.size.map(|pixels| 0.5 * pixels as f32);
         let start = sensor.ray(middle.into(), Vec2::ZERO).ray.origin;

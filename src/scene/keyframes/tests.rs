@@ -25,7 +25,7 @@ fn of_numbers(keys: &[(f64, f64)]) -> Value {
 /// The volume that `object` describes in a scene at `time`.
 fn at(object_: &Object, time: f64) -> Volume {
     let root = object("scene", &[("time", Value::Float(time)), ("v", Value::Object(object_.clone()))]);
-    let resolved = resolve(&root);
+    let resolved = resolve(&root, time);
     let Value::Object(resolved) = &resolved.properties[1].value else { panic!("no object") };
     let place = Place::new(DVec3::ZERO, time);
     volume::build(resolved, &Library::default(), &place).unwrap()
@@ -136,7 +136,7 @@ fn a_wind_that_changes_takes_things_as_far_as_it_adds_up_to() {
 #[test]
 fn the_time_of_a_scene_does_not_change() {
     let root = object("scene", &[("time", of_numbers(&[(0.0, 1.0)])), ("x", of_numbers(&[(0.0, 1.0)]))]);
-    let resolved = resolve(&root);
+    let resolved = resolve(&root, 0.0);
     assert_eq!(resolved.properties[1].value, Value::Float(1.0));
     assert!(matches!(resolved.properties[0].value, Value::Keyframes(_)));
 }

@@ -107,6 +107,23 @@ impl Starts {
         Some(Self { emitters, learnt })
     }
 
+    /// The same for `lights`, those of another time; none where they are others.
+    pub fn fitting(&self, lights: &Lights) -> Option<Self> {
+        let mut fitting = self.clone();
+        if fitting.learnt.len() != lights.all.len() {
+            return None;
+        }
+        for (index, learnt) in fitting.learnt.iter_mut().enumerate() {
+            let Some(learnt) = learnt else { continue };
+            let probability = lights.starts.probability(index);
+            if probability <= 0.0 {
+                return None;
+            }
+            learnt.over_unlearnt = (1.0 - UNLEARNT) * self.emitters.probability(index) / probability;
+        }
+        Some(fitting)
+    }
+
     /// The probability that a light subpath starts at an emitter.
     pub fn probability(&self, lights: &Lights, light: usize) -> f32 {
         UNLEARNT * lights.start_probability(light) + (1.0 - UNLEARNT) * self.emitters.probability(light)
