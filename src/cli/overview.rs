@@ -22,6 +22,8 @@ pub(super) struct Overview {
     media: Vec<(String, Spectrum, bool)>,
     /// Optical depths across the view, the least first.
     depths: Vec<f32>,
+    /// While the scene moves: from when to when, after its time, the shutter is open (s).
+    exposure: Option<[f64; 2]>,
 }
 
 impl Overview {
@@ -42,6 +44,7 @@ impl Overview {
             camera_in: setup.medium_name(scene.media_map.sensor),
             media: (1..=setup.medium_names.len()).map(medium).collect(),
             depths,
+            exposure: setup.exposure(),
         }
     }
 
@@ -71,12 +74,19 @@ impl Overview {
                 "thickness   {middle} mean free paths lie before what is seen, from {least} to {most} across the view"
             ));
         }
+        if let Some([opens, closes]) = self.exposure {
+            lines.push(format!(
+                "exposure    from {opens} to {closes} s after the scene's time: every sample of a pixel sees another moment; \
+                 here is said what there is halfway"
+            ));
+        }
         lines
     }
 
     /// For scripts.
     pub(super) fn json(&self) -> Value {
         json!({
+            "exposure": self.exposure,
             "box": self.size.map(|ends| ends.map(|end| end.to_array())),
             "camera": { "medium": self.camera_in, "position": self.camera.to_array() },
             "thickness": self.thickness().map(|[least, middle, most]| json!({ "least": least, "median": middle, "greatest": most })),

@@ -67,11 +67,16 @@ fn use_of(file: &mut Catalogue) -> (String, Value) {
         let names: Vec<_> = roles.color.iter().map(|number| quoted(name(number))).collect();
         parts.push(format!("colour from {}", names.join(", ")));
     }
+    if !roles.velocity.is_empty() {
+        let names: Vec<_> = roles.velocity.iter().map(|number| quoted(name(number))).collect();
+        parts.push(format!("carried along by {} while the shutter is open", names.join(", ")));
+    }
     let figures = json!({
         "up": if file.is_z_up() { "z" } else { "y" },
         "density": roles.density.as_ref().map(name),
         "temperature": roles.temperature.as_ref().map(name),
         "color": roles.color.iter().map(name).collect::<Vec<_>>(),
+        "velocity": roles.velocity.iter().map(name).collect::<Vec<_>>(),
     });
     (parts.join(", "), figures)
 }

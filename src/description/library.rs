@@ -7,9 +7,11 @@ use super::{
 use crate::error::{Error, Result};
 use crate::math::DVec3;
 use std::{
+    any::Any,
     cell::{Cell, RefCell},
     collections::HashMap,
     path::{Path, PathBuf},
+    sync::{Arc, Mutex, PoisonError},
 };
 
 /// All objects with an id, by id, and the warnings gathered while building.
@@ -22,6 +24,30 @@ pub struct Library {
     /// Where and when the scene is: what becomes the origin of all positions, in the file's coordinates (m), and its time (s). For
     /// what is built from an object and its library alone.
     pub place: Cell<(DVec3, f64)>,
+    /// What other moments of the scene read.
+    pub kept: Kept,
+}
+
+/// What was read for a scene that moves, by what it is: all its moments have it from here.
+#[derive(Clone, Debug, Default)]
+pub struct Kept(Arc<Mutex<HashMap<String, Arc<dyn Any + Send + Sync>>>>);
+
+impl Kept {
+    /// What there is for `key`, or else what `read` reads.
+    pub fn recall<T: Send + Sync + 'static>(
+        &self,
+        key: String,
+        read: impl FnOnce() -> Result<T>,
+    ) -> Result<Arc<T>> {
+        let kept = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = kept().get(&key).and_then(|known| Arc::clone(known).downcast().ok());
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        let new = Arc::new(read()?);
+        kept().insert(key, Arc::clone(&new) as Arc<dyn Any + Send + Sync>);
+        Ok(new)
+    }
 }
 
 impl Library {

@@ -13,7 +13,7 @@ pub mod substitutes;
 pub mod transform;
 
 pub use keyframes::Keyframes;
-pub use library::Library;
+pub use library::{Kept, Library};
 pub use object::{Location, Object, Position, Property, Value};
 pub use parameter::{Plugin, Table};
 pub(crate) use parameter::{rows, table};

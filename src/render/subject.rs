@@ -25,7 +25,7 @@ impl<'a> From<&'a Scene> for Subject<'a> {
 
 impl<'a> From<&'a Setup> for Subject<'a> {
     fn from(setup: &'a Setup) -> Self {
-        if setup.is_moving() { Self::Moving(setup) } else { Self::Still(&setup.scene) }
+        if setup.exposure().is_some() { Self::Moving(setup) } else { Self::Still(&setup.scene) }
     }
 }
 
@@ -61,11 +61,7 @@ impl<'a> Stage<'a> {
 
     /// Has `make` make `pass` and those behind it, as many as it is told at most, by an instrument that sees the scene as
     /// they do.
-    pub(super) fn show<T>(
-        &self,
-        pass: u64,
-        make: impl FnOnce(&Instrument<'_>, usize) -> T,
-    ) -> Result<T> {
+    pub(super) fn show<T>(&self, pass: u64, make: impl FnOnce(&Instrument<'_>, usize) -> T) -> Result<T> {
         let moment = self.moving.and_then(|setup| setup.moment(self.instrument.settings.seed, pass));
         let Some(moment) = moment.transpose()? else { return Ok(make(&self.instrument, usize::MAX)) };
         let instrument = self.instrument.seeing(&moment.scene, pass as usize).sorting(self.layers);

@@ -14,13 +14,13 @@ use super::{
     keyframes,
     rebuild::{Before, Parts},
     sections::Sections,
-    shutter::{self, Moving, Shutter},
+    shutter::{self, Shutter},
     smoke::{self, Taken},
     unseen::{self},
 };
 use crate::{
     bsdf::{self, Bsdf, BsdfModel},
-    description::{Library, Location, Object, Params, Position, Property, Value, params::Child},
+    description::{Kept, Library, Location, Object, Params, Position, Property, Value, params::Child},
     emitter::{self, Emitter},
     error::{Error, Result},
     film::{
@@ -80,7 +80,34 @@ pub struct Setup {
     pub(super) parts: Parts,
 }
 
+/// A scene that moves while the shutter is open.
+pub(super) struct Moving {
+    /// Its description, at all times.
+    root: Object,
+    shutter: Shutter,
+    /// What files hold.
+    kept: Kept,
+}
+
 impl Setup {
+    /// From when to when, after the scene's time, the shutter is open (s); none if nothing moves meanwhile.
+    pub fn exposure(&self) -> Option<[f64; 2]> {
+        self.moving.as_ref().map(|Moving { shutter, .. }| [shutter.opens, shutter.closes])
+    }
+
+    /// The scene as `pass` of renders with `seed` sees it; none if it stands still. The origin stays where it is: what stands still
+    /// need not be built again, and what was learnt lies where it did.
+    pub fn moment(&self, seed: u64, pass: u64) -> Option<Result<Self>> {
+        let moving = self.moving.as_ref()?;
+        let after = moving.shutter.moment(seed, pass);
+        let before = Before::new(self).map(Before::in_place);
+        let built = before.and_then(|before| assemble(moving, self.overrides, Some(&before), after));
+        Some(built.map_err(|error| Error {
+            place: format!("{after} s after the scene's time: {}", error.place),
+            ..error
+        }))
+    }
+
     /// What a medium is called; where several overlap, all of them.
     pub fn medium_name(&self, medium: MediumIndex) -> String {
         self.names(self.scene.components(&medium))
@@ -103,34 +130,27 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
 /// since is taken from there.
 pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) -> Result<Setup> {
     plugins::check(root)?;
-    let shutter = Shutter::of(root)?;
+    let moving = Moving { root: root.clone(), shutter: Shutter::of(root)?, kept: Kept::default() };
     let before = before.map(Before::new).transpose()?;
-    let built = assemble(root, overrides, before.as_ref(), shutter.middle())?;
-    let moves = !shutter.is_instant() && shutter::moves(root);
-    let moving = moves.then(|| Moving { root: root.clone(), shutter });
-    Ok(Setup { moving, ..built })
-}
-
-/// The scene of `setup`, which `root` describes, at so many seconds `after` its time. The origin stays where it is: what does
-/// not move need not be built again, and what was learnt lies where it did.
-pub(super) fn build_moment(root: &Object, overrides: Overrides, setup: &Setup, after: f64) -> Result<Setup> {
-    let before = Before::new(setup)?.in_place();
-    assemble(root, overrides, Some(&before), after)
+    let built = assemble(&moving, overrides, before.as_ref(), moving.shutter.middle())?;
+    let moves = keyframes::has_any(root) || shutter::drifts(&built.root);
+    Ok(Setup { moving: (moves && !moving.shutter.is_instant()).then_some(moving), ..built })
 }
 
 /// Builds the scene as it is so many seconds `after` its time.
-fn assemble(root: &Object, overrides: Overrides, before: Option<&Before<'_>>, after: f64) -> Result<Setup> {
+fn assemble(moving: &Moving, overrides: Overrides, before: Option<&Before<'_>>, after: f64) -> Result<Setup> {
+    let Moving { root, shutter, kept } = moving;
     let root = &batch::expand(root)?;
     let root = &keyframes::resolve(root, smoke::time_of(root) + after);
-    let (root, smoke) = smoke::expand(root)?;
+    let (root, smoke) = smoke::expand(root, *shutter, kept)?;
     let mut library = Library::new(&root)?;
-    library.is_strict = overrides.strict;
+    (library.is_strict, library.kept) = (overrides.strict, kept.clone());
     let sections = Sections::sort(&root, &library)?;
     let kept = before.and_then(|before| before.recentre);
     let recentre = kept.map_or_else(|| sections.viewpoint(&library), Ok)?;
     let now = sections.time + after;
     library.place.set((recentre, now));
-    let mut builder = Builder::new(&library, Place::new(recentre, now), before);
+    let mut builder = Builder::new(&library, Place { after, ..Place::new(recentre, now) }, before);
     builder.add_shapes(&root, &sections.shapes)?;
     for child in &sections.emitters {
         builder.emitter(child)?;

@@ -5,24 +5,23 @@
 //! row, from any pass on, is spread evenly, each alone is uniform, and they have nothing to do with the base-2 points of
 //! low-discrepancy samplers, which count passes too.
 
-use super::{
-    batch,
-    build::{self, Setup},
-    keyframes, sensors,
-};
+use super::{batch, sensors};
 use crate::{
     description::{Object, Params, Value},
-    error::{Error, Result},
+    error::Result,
+    math::DVec3,
     sampling::{Stream, stream::Purpose},
     sensor::SHUTTER,
-    volume::WIND,
+    volume::{WIND, grid::VELOCITY},
 };
 
 /// When a camera's shutter opens and closes, after the scene's time (s).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shutter {
-    opens: f64,
-    closes: f64,
+    /// First,
+    pub(super) opens: f64,
+    /// and last.
+    pub(super) closes: f64,
 }
 
 /// 1 over the golden ratio: its multiples, modulo 1, lie as evenly as those of any number.
@@ -48,57 +47,73 @@ impl Shutter {
         0.5 * (self.opens + self.closes)
     }
 
+    /// How far what moves with velocities within bounds (m/s) gets while it is open, at least and at most (m).
+    pub(super) fn ways(self, velocities: [DVec3; 2]) -> [DVec3; 2] {
+        let ends = [self.opens, self.closes].into_iter().flat_map(|time| velocities.map(|v| v * time));
+        ends.fold([DVec3::ZERO; 2], |[low, high], way| [low.min(way), high.max(way)])
+    }
+
     /// When a `pass` of renders with `seed` sees the scene (s).
-    fn moment(self, seed: u64, pass: u64) -> f64 {
+    pub(super) fn moment(self, seed: u64, pass: u64) -> f64 {
         let first = Stream::new(seed, 0, 0, Purpose::Shutter).uniform_precisely();
         self.opens + (self.closes - self.opens) * (first + pass as f64 * GOLDEN).fract()
     }
 }
 
-/// A scene that moves while the shutter is open.
-#[derive(Clone, Debug)]
-pub(super) struct Moving {
-    /// Its description, at all times.
-    pub root: Object,
-    pub shutter: Shutter,
-}
-
 /// A shutter that closes before it opens is an error.
 pub(super) fn check(camera: &Params<'_>) -> Result<()> {
-    let [opens, closes] = [camera.float(SHUTTER[0])?, camera.float(SHUTTER[1])?];
-    if closes < opens {
+    let (opens, closes) = (camera.float(SHUTTER[0])?, camera.optional_float(SHUTTER[1])?);
+    if let Some(closes) = closes.filter(|closes| *closes < opens) {
         let expected = format!("a time not before \"{}\", {opens} s", SHUTTER[0]);
         return Err(camera.complain(SHUTTER[1], expected, format!("{closes} s")));
     }
     Ok(())
 }
 
-/// True if something in `root` drifts or has keyframes.
-pub(super) fn moves(root: &Object) -> bool {
-    keyframes::has_any(root) || has_wind(root)
-}
-
-fn has_wind(object: &Object) -> bool {
+/// True if something in `object`, which has no smoke in it, drifts in a wind or by its own velocity.
+pub(super) fn drifts(object: &Object) -> bool {
     object.properties.iter().any(|property| match &property.value {
-        Value::Object(child) => child.plugin == WIND || has_wind(child),
+        Value::Object(child) => child.plugin == WIND || drifts(child),
+        Value::String(grid) => property.name == VELOCITY && !grid.is_empty(),
         _ => false,
     })
 }
 
-impl Setup {
-    /// True if the scene moves while the shutter is open.
-    pub fn is_moving(&self) -> bool {
-        self.moving.is_some()
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whichever passes a render has, they see times that lie evenly.
+    #[test]
+    fn times_of_consecutive_passes_lie_evenly() {
+        let shutter = Shutter { opens: -1.0, closes: 3.0 };
+        for (seed, first, count) in [(0, 0, 16), (1, 7, 16), (2, 1_000_000, 64), (3, 12, 5), (4, 3, 1)] {
+            let mut times: Vec<f64> = (first..first + count).map(|pass| shutter.moment(seed, pass)).collect();
+            times.sort_by(f64::total_cmp);
+            assert!(times.iter().all(|time| (-1.0..3.0).contains(time)));
+            let next = times.iter().skip(1).copied().chain([times[0] + 4.0]);
+            let widest = times.iter().zip(next).map(|(a, b)| b - a).fold(0.0, f64::max);
+            // The three distances between multiples of the golden ratio.
+            assert!(widest <= 4.0 * 2.2 / count as f64, "{first}: {widest}");
+        }
     }
 
-    /// The scene as `pass` of renders with `seed` sees it; none if it stands still.
-    pub fn moment(&self, seed: u64, pass: u64) -> Option<Result<Self>> {
-        let Moving { root, shutter } = self.moving.as_ref()?;
-        let after = shutter.moment(seed, pass);
-        let explain = |error: Error| {
-            let place = format!("{after} s after the scene's time, while the shutter is open: {}", error.place);
-            Error { place, ..error }
-        };
-        Some(build::build_moment(root, self.overrides, self, after).map_err(explain))
+    /// Each alone is uniform over the exposure.
+    #[test]
+    fn the_time_of_a_pass_is_uniform_over_seeds() {
+        let shutter = Shutter { opens: 0.0, closes: 1.0 };
+        let (seeds, bins) = (20_000, 20);
+        let mut counts = vec![0.0; bins];
+        (0..seeds).for_each(|seed| counts[(shutter.moment(seed, 5) * bins as f64) as usize] += 1.0);
+        let expected = seeds as f64 / bins as f64;
+        let chi: f64 = counts.iter().map(|count: &f64| (count - expected).powi(2) / expected).sum();
+        assert!(chi < 43.8, "0.1 % of uniform numbers are beyond that: {chi}");
+    }
+
+    #[test]
+    fn the_way_of_smoke_is_that_of_both_ends() {
+        let shutter = Shutter { opens: -0.5, closes: 2.0 };
+        let [low, high] = shutter.ways([DVec3::new(-1.0, 0.0, 1.0), DVec3::new(3.0, 0.0, 2.0)]);
+        assert_eq!((low, high), (DVec3::new(-2.0, 0.0, -1.0), DVec3::new(6.0, 0.0, 4.0)));
     }
 }

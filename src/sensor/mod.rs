@@ -154,7 +154,7 @@ const ALL: &[Parameter] = rows! {
     nested("sampler", Optional, "The number of samples per pixel."),
     nested("medium", Optional, "The medium around the camera; default: found from the boundaries."),
     number(SHUTTER[0], "s", ANY, Is(0.0), "When the shutter opens, after the scene's `time`."),
-    number(SHUTTER[1], "s", ANY, Is(0.0), "When it closes. What moves in between is blurred."),
+    number(SHUTTER[1], "s", ANY, Said("0, or `shutter_open` if that is later"), "When it closes. What moves in between is blurred."),
 };
 
 /// The two ends of the time for which the shutter is open.

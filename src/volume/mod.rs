@@ -51,6 +51,8 @@ pub struct Place {
     pub instance: DAffine3,
     /// The scene's time (s).
     pub time: f64,
+    /// How long after that of its files (s): not 0 only while the shutter is open.
+    pub after: f64,
     /// The most that a value may be, where that is less than anything: 1 for a share of light.
     pub most: f32,
 }
@@ -58,7 +60,7 @@ pub struct Place {
 impl Place {
     /// At `time` (s), for values of any size.
     pub const fn new(recentre: DVec3, time: f64) -> Self {
-        Self { recentre, instance: DAffine3::IDENTITY, time, most: f32::INFINITY }
+        Self { recentre, instance: DAffine3::IDENTITY, time, after: 0.0, most: f32::INFINITY }
     }
 
     /// The same for values up to `most`.

@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 /// Values at the points of a lattice. Grids interpolate between them.
-pub trait Samples<V> {
+pub trait Samples<V>: Send + Sync {
     /// Number of samples along x, y and z, each at least 1.
     fn size(&self) -> [usize; 3];
 
@@ -55,7 +55,7 @@ impl<T, S, F> Mapped<T, S, F> {
     }
 }
 
-impl<T, U, S: Samples<T>, F: Fn(T) -> U> Samples<U> for Mapped<T, S, F> {
+impl<T, U, S: Samples<T>, F: Fn(T) -> U + Send + Sync> Samples<U> for Mapped<T, S, F> {
     fn size(&self) -> [usize; 3] {
         self.samples.size()
     }

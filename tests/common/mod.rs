@@ -84,7 +84,8 @@ impl Stage {
     pub(crate) fn render_layers(&self, strategies: Strategies, samples_per_pixel: u64, seed: u64) -> Image {
         let Setup { film, integrator, .. } = &self.setup;
         let settings = self.settings(strategies, samples_per_pixel, seed);
-        let image = render::render_layers(&self.setup, film, &settings, &integrator.layers, &mut |_| {}).unwrap();
+        let image =
+            render::render_layers(&self.setup, film, &settings, &integrator.layers, &mut |_| {}).unwrap();
         assert_eq!(image.faults, Faults::default());
         image
     }

@@ -124,3 +124,55 @@ fn keyframes_are_the_same_in_either_format() {
     let [json, xml, back] = ["scene.json -D bright=7", "scene.xml", "back.json"].map(image);
     assert!(json == xml && json == back);
 }
+
+/// The animated scene, of which all passes see another moment.
+fn blurred() -> Value {
+    let mut scene = animated();
+    scene["time"] = json!(1.0);
+    scene["sensor"]["shutter_open"] = json!(-0.25);
+    scene["sensor"]["shutter_close"] = json!(1.5);
+    scene
+}
+
+#[test]
+fn any_partition_of_the_samples_sees_the_same_moments() {
+    let sandbox = Sandbox::with_scene(&blurred());
+    let run = |words: &str| {
+        sandbox.run(&format!("render scene.json --strategies hit,next-event,join {words}")).ends(0)
+    };
+    run("--spp 7 -o all.exr --threads 2");
+    run("--samples 0..3 --sums a.sums --threads 1");
+    run("--samples 3..7 --sums b.sums --threads 3");
+    sandbox.run("merge b.sums a.sums -o merged.exr").ends(0);
+    assert_eq!(sandbox.channels("all.exr"), sandbox.channels("merged.exr"));
+    run("--spp 7 --resume --sums a.sums -o gone_on.exr");
+    assert_eq!(sandbox.channels("all.exr"), sandbox.channels("gone_on.exr"));
+    let info = sandbox.run("info scene.json").ends(0).out();
+    assert!(info.contains("exposure    from -0.25 to 1.5 s"), "{info}");
+}
+
+#[test]
+fn a_blurred_frame_is_the_same_alone() {
+    let mut scene = blurred();
+    scene["integrator"] = json!({"type": "aov", "aovs": "d:depth", "inner": {"type": "bdpt"}});
+    let step = |x: f64| json!([{"type": "translate", "value": [x, 0, 0]}]);
+    scene["ball"]["to_world"] = keyed(&[(0.0, step(0.0)), (3.0, step(1.5))]);
+    let sandbox = Sandbox::with_scene(&scene);
+    sandbox.run("render scene.json -o a.exr --frames 0..1 --fps 2 --spp 3").ends(0);
+    sandbox.run("render scene.json -o b.exr --frames 1 --fps 2 --spp 3").ends(0);
+    let [first, second, alone] =
+        ["a.0000.exr", "a.0001.exr", "b.0001.exr"].map(|name| sandbox.channels(name));
+    assert!(first != second && second == alone);
+}
+
+/// What stands still is not asked for another moment, and shows what it showed.
+#[test]
+fn an_open_shutter_changes_nothing_that_stands_still() {
+    let mut scene = scene_with(|name, at_2| if name == "velocity" { json!([0, 0, 0]) } else { at_2 });
+    let sandbox = Sandbox::with_scene(&scene);
+    sandbox.run("render scene.json -o still.exr --spp 2").ends(0);
+    scene["sensor"]["shutter_close"] = json!(2.0);
+    std::fs::write(sandbox.path("scene.json"), scene.to_string()).unwrap();
+    sandbox.run("render scene.json -o open.exr --spp 2").ends(0);
+    assert_eq!(sandbox.channels("still.exr"), sandbox.channels("open.exr"));
+}

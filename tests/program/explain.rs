@@ -18,7 +18,7 @@ fn plugins_kinds_and_parameters_are_explained() {
         ("explain gaussian", &["gaussian (rfilter)", "gaussian* (phase)"]),
         ("explain emitter", &["spot ", "envmap "]),
         ("explain cutoff_angle", &["spot (emitter)"]),
-        ("explain shutter_open", &["perspective (sensor)", "accepted, without effect: no motion blur"]),
+        ("explain shutter_open", &["perspective (sensor)", "When the shutter opens"]),
         ("explain keyframes", &["\"type\": \"keyframes\"", "<keyframes name=", "smooth", "--frames 0..47"]),
         ("explain progress", &["--progress json", "samples_per_pixel  samples so far", "\"image\": null}"]),
         ("explain", &["heterogeneous", "hdrfilm", "wave", "Phase functions", "keyframes: ", "progress: "]),

@@ -93,7 +93,8 @@ fn info_of_a_volume_file_lists_its_grids() {
     assert_eq!(lines[..5], expected, "{text}");
     assert!(text.contains("\"vel\", Tree_vec3s_5_4_3, fog volume, a velocity\n"), "{text}");
     let last = [
-        "smoke       density from \"density\", light from \"burn\", colour from \"Cd\"",
+        "smoke       density from \"density\", light from \"burn\", colour from \"Cd\", carried along by \"vel\" while \
+         the shutter is open",
         "scene       tyndall render a.vdb renders it; tyndall new a.vdb writes a scene",
     ];
     assert_eq!(lines[lines.len() - 2..], last);

@@ -21,6 +21,7 @@ mod guide;
 mod heuristics;
 mod layers;
 mod modes;
+mod motion;
 mod openings;
 mod overlaps;
 mod sobol;

@@ -1,7 +1,7 @@
 //! Progressive pictures: a preview by few pixels (P03T ch. 6).
 
 use crate::{
-    cli::{estimator::Estimator, parsers::one_of, progress::percent},
+    cli::{console::complain, estimator::Estimator, parsers::one_of, progress::percent},
     error::{Error, Result},
     film::layer::Layer,
     render::progressive::{Method, Shaded},
@@ -63,6 +63,11 @@ pub(super) fn estimator(given: &Estimator, setup: &Setup) -> Result<Estimator> {
 
 /// An error where the image cannot be interpolated, or layers are of all of its samples.
 pub(super) fn check(setup: &Setup) -> Result<()> {
+    if setup.exposure().is_some() {
+        complain(
+            "warning: a progressive picture shows the scene halfway through the exposure, without motion blur",
+        );
+    }
     let (width, height) = (setup.film.width, setup.film.height);
     if width.min(height) < 2 {
         let found = format!("{width} x {height} pixels");

@@ -9,8 +9,9 @@ mod taken;
 #[cfg(test)]
 mod tests;
 
+use super::shutter::Shutter;
 use crate::{
-    description::{Library, Object, Params, Property, Value},
+    description::{Kept, Library, Object, Params, Property, Value},
     error::Result,
     math::{DMat4, DVec3},
     sensor,
@@ -53,14 +54,20 @@ fn smokes(object: &Object) -> Box<dyn Iterator<Item = &Object> + '_> {
     }))
 }
 
-/// `root` with all smoke in it replaced, and what that was made of.
-pub fn expand(root: &Object) -> Result<(Cow<'_, Object>, Vec<Taken>)> {
+/// `root` with all smoke in it replaced, and what that was made of. Smoke has room to move while the `shutter` is open; what
+/// files hold is `kept`.
+pub(super) fn expand<'a>(
+    root: &'a Object,
+    shutter: Shutter,
+    kept: &Kept,
+) -> Result<(Cow<'a, Object>, Vec<Taken>)> {
     if smokes(root).next().is_none() {
         return Ok((Cow::Borrowed(root), vec![]));
     }
-    let library = Library::new(root)?;
+    let mut library = Library::new(root)?;
+    library.kept = kept.clone();
     let time = Params::new(root, &library, &super::TABLE).float("time")?;
-    let replaced = Replaced { is_y_up: is_y_up(root), ..Replaced::default() };
+    let replaced = Replaced { is_y_up: is_y_up(root), shutter, ..Replaced::default() };
     let (mut expanded, mut replaced) = (root.clone(), replaced);
     replaced.below(&mut expanded, &library, time)?;
     expanded.properties.extend(replaced.media);
@@ -72,6 +79,7 @@ pub fn expand(root: &Object) -> Result<(Cow<'_, Object>, Vec<Taken>)> {
 struct Replaced {
     /// +y is up in the scene.
     is_y_up: bool,
+    shutter: Shutter,
     /// The media in it: children of the scene.
     media: Vec<Property>,
     /// What it was made of.
@@ -87,7 +95,7 @@ impl Replaced {
                 self.below(child, library, time)?;
                 continue;
             }
-            let (object, medium, taken) = container(child, library, time, self.is_y_up)?;
+            let (object, medium, taken) = container(child, library, time, self)?;
             *child = object;
             let of_medium = |medium| Property { value: Value::Object(medium), ..property.clone() };
             self.media.extend(medium.map(of_medium));
@@ -116,26 +124,33 @@ fn container(
     smoke: &Object,
     library: &Library,
     time: f64,
-    is_y_up: bool,
+    around: &Replaced,
 ) -> Result<(Object, Option<Object>, Taken)> {
     let params = Params::new(smoke, library, &SMOKE_TABLE);
     let mut given = Parameters::read(&params, time)?;
     params.finish()?;
     let mut file = Catalogue::open(&given.file.path)?;
     let roles = Roles::of_file(&file.labels, given.wanted).map_err(|problem| problem.at(given.location))?;
-    let Held { roles, density, fire, empty } = file.held(roles)?;
-    let boxes = density.iter().chain(&fire).map(|contents| contents.domain);
+    let key = format!("{} {roles:?}", given.file.path.display());
+    let held = library.kept.recall(key, || file.held(roles))?;
+    let Held { roles, density, fire, empty } = &*held;
+    let boxes = density.iter().chain(fire).map(|contents| contents.domain);
     let Some([low, high]) = boxes.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]) else {
         return Err(given.nothing_left());
     };
-    let glow = roles.temperature.zip(fire).map(|(number, fire)| {
+    let glow = roles.temperature.zip(fire.as_ref()).map(|(number, fire)| {
         let label = &file.labels[number];
         given.glow(label, fire.hottest())
     });
-    if given.up == Up::Auto && file.is_z_up() && is_y_up && !given.is_turned() {
+    if given.up == Up::Auto && file.is_z_up() && around.is_y_up && !given.is_turned() {
         given.up = Up::Z;
     }
-    let taken = Taken::new(smoke, &given, &file.labels, &roles, &empty, glow);
-    let (object, medium) = parts::container(smoke, &given, &taken, [low, high]);
+    let is_still = around.shutter == Shutter::default();
+    let velocity = if is_still { &[] } else { roles.velocity.as_slice() };
+    let key = format!("{} {velocity:?}", given.file.path.display());
+    let velocities = library.kept.recall(key, || file.velocities(velocity))?;
+    let room = around.shutter.ways(velocities.map(|bound| given.velocity_scale * bound));
+    let taken = Taken::new(smoke, &given, &file.labels, roles, empty, glow, velocity);
+    let (object, medium) = parts::container(smoke, &given, &taken, [low + room[0], high + room[1]]);
     Ok((object, medium, taken))
 }

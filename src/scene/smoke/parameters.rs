@@ -33,6 +33,8 @@ pub struct Parameters<'a> {
     pub emission_scale: f64,
     /// Fraction of light that is scattered, not absorbed; where a grid gives a colour, a factor of that.
     pub albedo: Option<Spectrum>,
+    /// What its velocity is times (m/s in the file's world).
+    pub velocity_scale: f64,
     /// The group of its light.
     pub group: Option<String>,
     /// How light scatters.
@@ -81,6 +83,7 @@ impl<'a> Parameters<'a> {
             density_scale: params.float("density_scale")?,
             emission_scale,
             albedo: params.optional_color("albedo")?,
+            velocity_scale: params.float("velocity_scale")?,
             group: medium::group(params)?,
             phase: phase_of(params)?,
             exterior: params.child("exterior")?.and_then(|_| params.given("exterior")),
@@ -134,7 +137,7 @@ fn read_file(params: &Params<'_>, time: f64) -> Result<Shown> {
     Ok(Shown { path, name, sequence: Some(sequence) })
 }
 
-/// `density_grid`, `temperature_grid`, `color_grid`: names of grids, where they are not known by their names; "" takes
+/// `density_grid`, `temperature_grid`, `color_grid`, `velocity_grid`: names of grids, where they are not known by their names; "" takes
 /// none. `level_set_to_fog` (false): fills surfaces. Nothing glows where `emission_scale` is 0.
 fn wanted<'a>(params: &Params<'a>, emission_scale: f64) -> Result<Wanted<'a>> {
     let temperature = params.optional_string("temperature_grid")?;
@@ -142,6 +145,7 @@ fn wanted<'a>(params: &Params<'a>, emission_scale: f64) -> Result<Wanted<'a>> {
         density: params.optional_string("density_grid")?,
         temperature: if emission_scale > 0.0 { temperature } else { Some("") },
         color: params.optional_string("color_grid")?,
+        velocity: params.optional_string("velocity_grid")?,
         level_set_to_fog: params.boolean("level_set_to_fog")?,
     })
 }

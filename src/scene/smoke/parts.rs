@@ -104,6 +104,10 @@ impl Maker<'_> {
         if !name.is_empty() {
             parts.push(self.property("grid", Value::String(name.to_owned())));
         }
+        if !self.taken.velocity.is_empty() {
+            parts.push(self.property("velocity_grid", Value::String(self.taken.velocity.join(","))));
+            parts.push(self.property("velocity_scale", Value::Float(self.given.velocity_scale)));
+        }
         parts.extend(convert);
         self.plugin("gridvolume", parts)
     }

@@ -33,6 +33,8 @@ pub struct Taken {
     pub glow: Option<Glow>,
     /// The grid of colours, or three of a component each.
     pub color: Vec<String>,
+    /// The grid of velocities, or three of a component each, where the smoke moves by them.
+    pub velocity: Vec<String>,
     /// Grids that are not used, and what they are where that is known.
     pub unused: Vec<String>,
 }
@@ -51,7 +53,8 @@ pub struct Glow {
 }
 
 impl Taken {
-    /// What of the grids called `labels` became the smoke that is `given`, by their `roles`; `empty` ones have none.
+    /// What of the grids called `labels` became the smoke that is `given`, by their `roles`; `empty` ones have none, and
+    /// it moves by the `velocity`.
     pub fn new(
         smoke: &Object,
         given: &Parameters<'_>,
@@ -59,8 +62,10 @@ impl Taken {
         roles: &Roles,
         empty: &[usize],
         glow: Option<Glow>,
+        velocity: &[usize],
     ) -> Self {
-        let unused = labels.iter().enumerate().filter(|(number, _)| !roles.has(*number));
+        let is_unused = |number: &usize| !roles.has(*number) && !velocity.contains(number);
+        let unused = labels.iter().enumerate().filter(|(number, _)| is_unused(number));
         Self {
             name: smoke.id.clone().unwrap_or_else(|| smoke.plugin.clone()),
             file: given.file.path.clone(),
@@ -71,6 +76,7 @@ impl Taken {
             is_surface: roles.density.is_some_and(|number| labels[number].is_level_set()),
             glow,
             color: roles.color.iter().map(|number| labels[*number].name.clone()).collect(),
+            velocity: velocity.iter().map(|number| labels[*number].name.clone()).collect(),
             unused: unused.map(|(number, label)| described(label, empty.contains(&number))).collect(),
         }
     }
@@ -109,6 +115,9 @@ impl fmt::Display for Taken {
         }
         if !self.color.is_empty() {
             write!(f, ", colour from \"{}\"", self.color.join("\", \""))?;
+        }
+        if !self.velocity.is_empty() {
+            write!(f, ", carried along by \"{}\"", self.velocity.join("\", \""))?;
         }
         if !self.unused.is_empty() {
             write!(f, "; not used: {}", self.unused.join(", "))?;

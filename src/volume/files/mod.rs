@@ -18,7 +18,7 @@ pub mod roles;
 pub mod sequence;
 mod sparse;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 mod value;
 mod vdb;
 

@@ -15,7 +15,7 @@ const TEMPERATURES: [&str; 2] = ["heat", "temperature"];
 
 /// Names of colours, and what three grids of a component each add to one.
 const COLORS: [&str; 2] = ["Cd", "color"];
-const COMPONENTS: [[&str; 3]; 2] = [["_r", "_g", "_b"], [".x", ".y", ".z"]];
+const COMPONENTS: [[&str; 3]; 3] = [["_r", "_g", "_b"], [".x", ".y", ".z"], ["_x", "_y", "_z"]];
 
 /// Names of velocities, which no still picture shows; alone or with a component's name.
 const VELOCITIES: [&str; 5] = ["vel", "velocity", "v", "motion", "voxel_velocity"];
@@ -29,6 +29,8 @@ pub struct Wanted<'a> {
     pub temperature: Option<&'a str>,
     /// Name of the colour.
     pub color: Option<&'a str>,
+    /// Name of the velocity.
+    pub velocity: Option<&'a str>,
     /// True if fog is to be made of level sets.
     pub level_set_to_fog: bool,
 }
@@ -42,6 +44,8 @@ pub struct Roles {
     pub temperature: Option<usize>,
     /// Of which colour: one grid, or three of a component each.
     pub color: Vec<usize>,
+    /// Where it is carried: one grid, or three of a component each.
+    pub velocity: Vec<usize>,
 }
 
 /// Temperatures above this are in kelvin, not in thousands of it.
@@ -73,7 +77,7 @@ fn is_fire(label: &Label) -> bool {
 /// True if `label` is of a velocity or a component of one.
 pub fn is_velocity(label: &Label) -> bool {
     let name = label.plain_name().to_lowercase();
-    let base = COMPONENTS.iter().flatten().chain(&["_x", "_y", "_z"]).find_map(|end| name.strip_suffix(end));
+    let base = COMPONENTS.iter().flatten().find_map(|end| name.strip_suffix(end));
     VELOCITIES.contains(&base.unwrap_or(&name))
 }
 
@@ -133,12 +137,16 @@ impl Roles {
             Some(name) => search.named(name, "color_grid", &[1, 3])?.into_iter().collect(),
             // It is smoke that has one.
             None if density.is_none() => vec![],
-            None => search.color(),
+            None => search.vectors(&COLORS),
         };
-        Ok(Self { density, temperature, color })
+        let velocity = match wanted.velocity {
+            Some(name) => search.velocity_named(name)?,
+            None => search.vectors(&VELOCITIES),
+        };
+        Ok(Self { density, temperature, color, velocity })
     }
 
-    /// True if grid `number` is for anything.
+    /// True if grid `number` is for anything that does not move.
     pub fn has(&self, number: usize) -> bool {
         self.density == Some(number) || self.temperature == Some(number) || self.color.contains(&number)
     }
@@ -177,7 +185,11 @@ impl Search<'_> {
             return Err(Problem::new(format!("a grid of densities for \"{parameter}\""), found, remedy));
         }
         if label.channels.is_none_or(|count| !channels.contains(&count)) {
-            let kind = if channels == [1] { "real numbers" } else { "real numbers or colours" };
+            let kind = match channels {
+                [1] => "real numbers",
+                [3] => "vectors",
+                _ => "real numbers or colours",
+            };
             let remedy = format!("name another of the file's grids: {}", list(self.grids));
             return Err(Problem::new(format!("a grid of {kind} for \"{parameter}\""), found, remedy));
         }
@@ -192,13 +204,23 @@ impl Search<'_> {
         })
     }
 
-    fn color(&self) -> Vec<usize> {
+    /// The grid of three numbers that one of `names` names, or else three of a component each; none where there is neither.
+    fn vectors(&self, names: &[&str]) -> Vec<usize> {
         let component = |name: &str, end: &str| self.first(&[&format!("{name}{end}")], 1);
         let three = |name: &str| -> Option<Vec<usize>> {
             COMPONENTS.iter().find_map(|ends| ends.iter().map(|end| component(name, end)).collect())
         };
-        let one = self.first(&COLORS, 3).map(|number| vec![number]);
-        one.or_else(|| COLORS.iter().find_map(|name| three(name))).unwrap_or_default()
+        let one = self.first(names, 3).map(|number| vec![number]);
+        one.or_else(|| names.iter().find_map(|name| three(name))).unwrap_or_default()
+    }
+
+    /// The velocity that the user calls `name`: a grid, or the beginning of the names of three.
+    fn velocity_named(&self, name: &str) -> Result<Vec<usize>> {
+        let found = self.vectors(&[name]);
+        if name.is_empty() || !found.is_empty() {
+            return Ok(found);
+        }
+        self.named(name, "velocity_grid", &[3]).map(|one| one.into_iter().collect())
     }
 
     /// By its name; or the only grid of numbers that could be one; or the first level set, if fog is made of such.

@@ -10,7 +10,8 @@ fn folder() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src/volume/files/samples")
 }
 
-fn sample(name: &str) -> Vec<u8> {
+/// The bytes of a file of samples.
+pub(in crate::volume) fn sample(name: &str) -> Vec<u8> {
     let file = File::open(folder().join(format!("{name}.gz"))).unwrap();
     let mut bytes = vec![];
     GzDecoder::new(file).read_to_end(&mut bytes).unwrap();

@@ -46,7 +46,7 @@ pub(super) fn array<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
 }
 
 /// What a sample may be.
-pub trait Value: Copy + PartialEq {
+pub trait Value: Copy + PartialEq + Send + Sync {
     /// Numbers to a value.
     const CHANNELS: usize;
     /// All numbers 0.

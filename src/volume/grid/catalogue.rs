@@ -5,7 +5,7 @@ use super::vol;
 use crate::{
     description::mend::Survey,
     error::Result,
-    math::{DAffine3, DVec3, Spectrum, boxes::image},
+    math::{DAffine3, DVec3, Spectrum, axes, boxes::image},
     volume::{
         Samples,
         files::{Archive, Field, Label, Source, Sparse, Value, roles::Roles},
@@ -43,6 +43,7 @@ pub struct Contents {
 }
 
 /// The grids of a file that are of use, and what they hold.
+#[derive(Clone, Debug)]
 pub struct Held {
     /// Which they are.
     pub roles: Roles,
@@ -121,6 +122,16 @@ impl Catalogue {
             roles.color.clear();
         }
         Ok(Held { roles, density, fire, empty })
+    }
+
+    /// Bounds of the components of the velocity that grids `numbers` are, 0 among them.
+    pub fn velocities(&mut self, numbers: &[usize]) -> Result<[DVec3; 2]> {
+        let grids = numbers.iter().map(|number| self.contents(*number)).collect::<Result<Vec<_>>>()?;
+        let bound = |end: usize| {
+            let all: Vec<f32> = grids.iter().flat_map(|grid| grid.range[end].iter().copied()).collect();
+            DVec3::from(axes(|axis| all.get(axis).copied().unwrap_or_default().into()))
+        };
+        Ok([bound(0).min(DVec3::ZERO), bound(1).max(DVec3::ZERO)])
     }
 
     /// Reads grid `number`.

@@ -80,7 +80,7 @@ pub(super) fn numbers<V, const N: usize>(
 fn mapped<V: 'static>(
     samples: Box<dyn Samples<V>>,
     mend: Option<Mend>,
-    of: impl Fn(Mend, V) -> V + 'static,
+    of: impl Fn(Mend, V) -> V + Send + Sync + 'static,
 ) -> Box<dyn Samples<V>> {
     match mend {
         None => samples,

@@ -5,6 +5,7 @@
 //! around the transformed cube. [`VolumeModel::eval`] goes on beyond it as `wrap_mode` says, and so it does
 //! in what a turned or sheared cube leaves of its box; integrals and inversions count the box and no more.
 
+mod advection;
 mod catalogue;
 mod checks;
 mod convert;
@@ -27,6 +28,7 @@ use crate::{
         cells::{Cells, Crossing},
     },
 };
+use advection::{Flow, Velocity};
 use checks::*;
 use convert::Convert;
 pub use convert::HOTTEST;
@@ -109,6 +111,9 @@ struct Given<'a> {
     to_world: DAffine3,
     uses_file_box: bool,
     convert: Convert,
+    /// The velocity that carries it along, and for how long (s).
+    velocity: Option<(&'a str, f64)>,
+    seconds: f64,
 }
 
 impl<'a> Given<'a> {
@@ -131,9 +136,32 @@ impl<'a> Given<'a> {
             to_world: place.to_world(params)?,
             uses_file_box: params.optional_boolean("use_grid_bbox")?.unwrap_or(is_vdb),
             convert: Convert::read(params)?,
+            velocity: velocity(params)?,
+            seconds: place.after,
             path,
         })
     }
+
+    /// The file, as the velocity has carried its values along.
+    fn source(&self, most: f32, library: &Library) -> Result<Source> {
+        let Self { path, grid, convert, .. } = self;
+        let read = || file::open(path, *grid, *convert)?.mended(path, most, library);
+        let Some((names, scale)) = self.velocity.filter(|_| self.seconds != 0.0) else { return read() };
+        let key = format!("{} {grid:?} {convert:?} {names} {scale}", path.display());
+        let flow = library
+            .kept
+            .recall(key, || Ok(Flow { source: read()?, velocity: Velocity::read(path, names, scale)? }))?;
+        flow.after(path, self.seconds)
+    }
+}
+
+/// Names the grid of a velocity that carries values along.
+pub const VELOCITY: &str = "velocity_grid";
+
+/// The grids of the velocity that carries values along, and what theirs are times (m/s); none where none is given.
+fn velocity<'a>(params: &Params<'a>) -> Result<Option<(&'a str, f64)>> {
+    let (names, scale) = (params.optional_string(VELOCITY)?, params.float("velocity_scale")?);
+    Ok(names.filter(|names| !names.trim().is_empty()).map(|names| (names, scale)))
 }
 
 /// The six numbers that `object`, a `gridvolume` of six channels, has everywhere: wherever it lies, and beyond it, as in
@@ -170,14 +198,16 @@ impl Grid {
         choice("convert", &words::<3, _>(&Convert::NAMES), "none", "`fog`: level set to density. `blackbody`: temperature to radiance.").ours(),
         number("temperature_scale", "K", within(0.0, HOTTEST), Is(1.0), "For `blackbody`: kelvin per unit of the grid.").ours(),
         number("temperature_offset", "K", within(0.0, HOTTEST), Is(0.0), "For `blackbody`: temperature just above a value of 0.").ours(),
+        text(VELOCITY, "the name of a grid, or three with commas", Optional, "Grid of the same file (m/s, in its world) that carries the values along while the camera's shutter is open.").ours(),
+        number("velocity_scale", "", ANY, Is(1.0), "Multiplies the velocity.").ours(),
         ignored("accel", "the maximum is known, and no texture unit runs"),
         ignored("max_value", "the maximum is known, and no texture unit runs"),
     };
 
     pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
-        let Given { path, grid, filter, wrap, mut to_world, uses_file_box, convert } =
-            Given::read(params, place)?;
-        let source = file::open(&path, grid, convert)?.mended(&path, place.most, params.library)?;
+        let given = Given::read(params, place)?;
+        let source = given.source(place.most, params.library)?;
+        let Given { path, filter, wrap, mut to_world, uses_file_box, .. } = given;
         if uses_file_box {
             check_box(&path, &source.to_file)?;
             to_world *= source.to_file;

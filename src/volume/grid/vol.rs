@@ -21,7 +21,7 @@ struct Voxels<V> {
     values: Vec<V>,
 }
 
-impl<V: Copy> Samples<V> for Voxels<V> {
+impl<V: Copy + Send + Sync> Samples<V> for Voxels<V> {
     fn size(&self) -> [usize; 3] {
         self.size
     }
