@@ -49,8 +49,8 @@ pub struct Estimator {
 
     /// Sampling strategies to use, separated by commas [default: those that the pilot of bdpt finds worth their time]
     ///
-    /// The pilot takes 1 in 128 of the samples to come. It chooses the strategies, how many samples each takes, when walks
-    /// end, and where light subpaths start. tyndall info --pilot shows the candidates. Images of fewer than 100,000 samples,
+    /// The pilot takes 1 in 128 of the samples to come, 768 at least. It chooses the strategies, how many samples each takes, when walks
+    /// end, and where light subpaths start. tyndall info --pilot shows the candidates. Images of fewer than 25,000 samples,
     /// over all pixels, have no pilot: all strategies but equiangular take equal numbers of samples. So do strategies that
     /// are named here; nothing is learnt for them unless --starts or --guide asks for it.
     ///

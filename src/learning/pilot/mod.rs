@@ -23,12 +23,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Of its random numbers; the same for all images of a scene, so that all of them are made alike.
 const SEED: u64 = 0x7079_6c6f_7473;
-/// A pilot takes this part of an image's samples at most...
+/// A pilot takes this part of an image's samples...
 const SHARE: f64 = 1.0 / 128.0;
-/// ... no more than so many, as more tell hardly more...
-const MOST: f64 = 16384.0;
-/// ... and is left out where fewer remain: from so few, all alike do as well as what they choose.
+/// ... but so many at least, as from fewer all alike do as well as what they choose...
 const LEAST: f64 = 768.0;
+/// ... and no more than so many, as more tell hardly more.
+const MOST: f64 = 16384.0;
+/// It is left out where it would take a greater part of an image's samples.
+const LARGEST_SHARE: f64 = 1.0 / 32.0;
 /// Noise of rare bright paths, over what a pilot sees of it. Measured: 2 to 4 do equally well, 0 chooses 10 % worse.
 const UNSEEN: f64 = 3.0;
 /// Samples of each pixel that takes part: enough for a variance.
@@ -126,7 +128,7 @@ pub fn choose(scene: &Scene, film: &Film, settings: &Settings, decided: Decided)
     let base = Choice { among: all, strategies: all, effort, gain: 1.0 };
     let work = settings.budget.samples_of(film.len());
     let none = Report { choice: base, candidates: Vec::new(), samples: 0.0 };
-    if scene.lights.is_empty() || SHARE * work < LEAST {
+    if scene.lights.is_empty() || LARGEST_SHARE * work < LEAST {
         return none;
     }
     let pilots = Pilots { scene, film, settings, decided, base, work };
@@ -195,7 +197,7 @@ impl Pilots<'_> {
             ..self.settings.options
         };
         let settings = Settings { options, seed: SEED, sampler: Sampler::Independent, ..*self.settings };
-        let samples = (SHARE * self.work).min(MOST) as usize;
+        let samples = (SHARE * self.work).clamp(LEAST, MOST) as usize;
         let passes = PASSES.max(samples / self.film.len());
         let learnt = training::learn_for(self.scene, self.film, &settings);
         let compiled = compiled::by_kind(self.scene, self.film, &settings, learnt, PIXELS_PER_BLOCK);
@@ -371,9 +373,9 @@ mod tests {
         };
         let pixels = setup.film.len() as f64;
         assert_eq!(samples(16), 0.0);
-        for each in [256, 1024] {
-            let found = samples(each);
-            assert!(found > 0.0 && found <= 1.5 * SHARE * each as f64 * pixels, "{each}: {found}");
+        for each in [64, 256, 1024] {
+            let (found, work) = (samples(each), each as f64 * pixels);
+            assert!(found > 0.0 && found <= 1.5 * (SHARE * work).max(LEAST), "{each}: {found}");
         }
         assert!(samples(1 << 20) <= MOST);
     }
