@@ -36,7 +36,8 @@
 //! on contact sheets; a table of shares of energy, variance and time; and which kinds of strategies the scene could do
 //! without, by error x time of short renders that take turns. `tyndall pixel SCENE X Y` writes the paths of that pixel's
 //! samples as JSON, the very ones that a render with the same seed makes: vertices with their pdfs, connections with their
-//! weights, light subpaths, and the value that they add up to.
+//! weights, light subpaths, and the value that they add up to. `tyndall pixel SCENE --outliers` finds the contributions that make
+//! single bright pixels, and writes their paths as JSON or draws them on a page.
 //!
 //! # Images: `tyndall diff`
 //!

@@ -1,6 +1,7 @@
 //! The paths of one pixel sample, written out for debugging: every vertex with its densities, every contribution with
 //! its weight. Positions are those of the scene file.
 
+pub mod outliers;
 mod report;
 pub mod sample;
 

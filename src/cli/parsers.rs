@@ -62,6 +62,11 @@ pub(super) fn positive_u32(text: &str) -> Result<u32, String> {
     }
 }
 
+pub(super) fn contributions(text: &str) -> Result<u16, String> {
+    let number = text.parse().ok().filter(|most| (1..=1000).contains(most));
+    number.ok_or_else(|| "expected a number of contributions from 1 to 1000, such as 10".to_owned())
+}
+
 pub(super) fn batches(text: &str) -> Result<u32, String> {
     let number = text.parse().ok().filter(|batches| (2..=1000).contains(batches));
     number.ok_or_else(|| "expected a number of images from 2 to 1000, such as 16".to_owned())

@@ -25,6 +25,7 @@ mod keeping;
 mod layering;
 mod manual;
 mod meters;
+mod outliers;
 mod outputs;
 mod page;
 mod phase;
