@@ -91,9 +91,15 @@ fn is_dark(mean: f64, scene: &Scene) -> bool {
 fn unreached(scene: &Scene, options: &Options) -> String {
     let is_bdpt = options.strategies == Strategies::BDPT;
     let kinds = coverage::unreached(scene, options);
+    let least = options.min_depth;
     match kinds.iter().min_by_key(|kind| kind.by_bdpt as u8) {
         Some(kind) if kind.by_bdpt == Share::None => format!("no integrator reaches {}", kind.light),
         Some(kind) => format!("these strategies do not reach {}; bdpt does", kind.light),
+        None if least > 1 => {
+            format!(
+                "no sample found light on paths of {least} segments or more, and min_depth leaves out the others"
+            )
+        }
         None if is_bdpt => "no sample found light. It may be rare: take more samples".to_owned(),
         None => "no sample found light. It may be rare: take more samples, or --integrator bdpt".to_owned(),
     }

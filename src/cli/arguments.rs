@@ -179,7 +179,8 @@ impl Command {
 mod tests {
     use super::{
         super::{
-            estimator::{MaxDepth, Profile},
+            depth::MaxDepth,
+            estimator::Profile,
             parsers::{Frames, Size},
         },
         *,
@@ -300,6 +301,7 @@ mod tests {
             ("render a.xml --threads 99999", "at most 4096"),
             ("render a.xml --time-limit -5", "above 0"),
             ("render a.xml --max-depth -2", "-1 for no limit"),
+            ("render a.xml --min-depth -1", "from 0 to 4294967295"),
             ("render a.xml -D res", "name=value"),
             ("render a.xml -D =3", "before \"=\""),
             ("render a.xml -o a.jpg", ".hdr or .png"),

@@ -1,9 +1,6 @@
 //! Contenders of a study out of words: whatever says how `tyndall render` makes paths can be one, and can be an axis.
 
-use super::{
-    estimator::{Estimator, MaxDepth},
-    study::Study,
-};
+use super::{depth::MaxDepth, estimator::Estimator, study::Study};
 use crate::{
     analysis::study::{
         contender::{Contender, How, slug},
@@ -198,7 +195,13 @@ fn same_light(requested: &[Estimator]) -> String {
             (estimator.no_hide_emitters, " --no-hide-emitters"),
         ];
         let switch = switches.into_iter().find_map(|(is_on, words)| is_on.then_some(words));
-        format!("{}{}", scattering.unwrap_or_default(), switch.unwrap_or_default())
+        let least = estimator.min_depth.map(|least| format!(" --min-depth {least}"));
+        format!(
+            "{}{}{}",
+            scattering.unwrap_or_default(),
+            switch.unwrap_or_default(),
+            least.unwrap_or_default()
+        )
     };
     let mut all = requested.iter().map(words);
     let first = all.next().unwrap_or_default();
@@ -339,6 +342,8 @@ mod tests {
         assert_eq!(first(&["--vary", "scattering=multiple,single"]), pt);
         assert_eq!(first(&["--vary", "hide-emitters=off"]), format!("{pt} --no-hide-emitters"));
         assert_eq!(first(&["--vary", "step=0.1,0.2"]), pt);
+        assert_eq!(first(&["--vary", "min-depth=3"]), format!("{pt} --min-depth 3"));
+        assert_eq!(first(&["--vary", "min-depth=2,3"]), pt);
     }
 
     #[test]

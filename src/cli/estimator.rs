@@ -2,6 +2,7 @@
 
 use super::{
     console::complain,
+    depth::{MaxDepth, max_depth, min_depth},
     heading,
     media::Media,
     parsers::{Size, algorithm, one_of},
@@ -16,7 +17,7 @@ use crate::{
     passes::{Settings, budget::Budget},
     sampling::{Basis, Sampler},
     scene::build::Setup,
-    settings::{Overrides, integrator::Restriction},
+    settings::Overrides,
     transport::{
         Algorithm, Connections, Effort, Guiding, Heuristic, Options, Sky, Strategies, equiangular_applies,
         profiles::{Needs, ProfileName},
@@ -111,6 +112,13 @@ pub struct Estimator {
     #[arg(long, value_name = "N", value_parser = max_depth, allow_negative_numbers = true)]
     pub max_depth: Option<MaxDepth>,
 
+    /// Minimum number of segments of a path; shorter paths do not count: 2 leaves out emitters in direct view
+    /// [default: the scene's]
+    ///
+    /// With --max-depth of the same number, the image shows the light of paths of exactly that length.
+    #[arg(long, value_name = "N", value_parser = min_depth, allow_negative_numbers = true)]
+    pub min_depth: Option<u32>,
+
     /// Source of random numbers for the samples of a pixel and for light subpaths [default: sobol, but independent where
     /// the scene asks for layers of variances]
     ///
@@ -153,23 +161,6 @@ pub enum Profile {
     Fitted,
     /// General code with every feature, for comparison
     Everything,
-}
-
-/// A bound on the length of paths.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum MaxDepth {
-    /// At most this number of segments.
-    Edges(u32),
-    /// No bound (-1, as in Mitsuba).
-    Unbounded,
-}
-
-fn max_depth(text: &str) -> std::result::Result<MaxDepth, String> {
-    match text.parse::<i64>().map(u32::try_from) {
-        Ok(Ok(edges)) => Ok(MaxDepth::Edges(edges)),
-        _ if text == "-1" => Ok(MaxDepth::Unbounded),
-        _ => Err("expected a number of edges from 0 to 4294967295, or -1 for no limit".into()),
-    }
 }
 
 /// Where light subpaths start: true where that is learnt.
@@ -273,17 +264,20 @@ impl Estimator {
         let guide = self.guiding(scene, algorithm, heuristic)?;
         let sky = self.sky(setup, strategies).unwrap_or(scene.effort.sky);
         let effort = Effort { guide, learnt_starts: self.learnt_starts(strategies), sky, ..scene.effort };
-        Ok(Options {
+        let options = Options {
             algorithm,
             strategies,
             effort,
             basis: self.basis.unwrap_or(scene.basis),
             heuristic,
             max_depth,
+            min_depth: self.min_depth.unwrap_or(scene.min_depth),
             forced_interaction,
             hide_emitters,
             connections,
-        })
+        };
+        self.check_min_depth(&options)?;
+        Ok(options)
     }
 
     /// Where nothing is connected, a pilot may judge all there is.
@@ -348,6 +342,7 @@ impl Estimator {
     fn warn_of_preview(&self) {
         for (is_given, flag) in [
             (self.max_depth.is_some(), "--max-depth"),
+            (self.min_depth.is_some(), "--min-depth"),
             (self.heuristic.is_some(), "--heuristic"),
             (self.guide.is_some(), "--guide"),
         ] {
@@ -356,21 +351,6 @@ impl Estimator {
                 complain(&format!("warning: {flag} {text}"));
             }
         }
-    }
-
-    /// Some heuristics need a bound on the length of paths.
-    fn check_depth(&self, heuristic: Heuristic, edges: Option<u32>) -> Result<()> {
-        let too_deep = |most: &u32| edges.is_none_or(|edges| edges > *most);
-        let Some(most) = heuristic.most_edges().filter(too_deep) else { return Ok(()) };
-        let place = if self.max_depth.is_some() { "--max-depth" } else { "the scene's max_depth" };
-        Err(Error::new(
-            place,
-            format!("a number from 0 to {most}, for the heuristic {heuristic}"),
-            edges.map_or("-1 (no limit)".to_owned(), |edges| edges.to_string()),
-            format!(
-                "give --max-depth {most}, or choose another --heuristic: balance, power, maximum or uniform"
-            ),
-        ))
     }
 
     fn forced_interaction(&self, setup: &Setup, algorithm: Algorithm, strategies: Strategies) -> bool {
@@ -386,24 +366,6 @@ impl Estimator {
         }
         let forced = self.forced_interaction || setup.integrator.options.forced_interaction;
         by_camera && !gathers && forced && !self.no_forced_interaction
-    }
-
-    fn max_depth(&self, setup: &Setup) -> Result<Option<u32>> {
-        let edges = match self.max_depth {
-            Some(MaxDepth::Edges(edges)) => Some(edges),
-            Some(MaxDepth::Unbounded) => None,
-            None => setup.integrator.options.max_depth,
-        };
-        let single = matches!(setup.integrator.restriction, Restriction::SingleScattering { .. });
-        if single && edges.is_none_or(|edges| edges > Restriction::SINGLE) {
-            return Err(Error::new(
-                "--max-depth",
-                "0, 1 or 2, for single_scattering",
-                edges.map_or("-1".to_owned(), |edges| edges.to_string()),
-                "leave it out, or let light scatter more often by --scattering multiple",
-            ));
-        }
-        Ok(edges)
     }
 
     /// That of the scene, unless another is named.

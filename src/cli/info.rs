@@ -240,7 +240,7 @@ fn describe_layers(layers: &[Layer]) -> String {
 }
 
 fn describe_integrator(name: &str, options: &Options, restriction: Restriction) -> String {
-    let Options { algorithm, heuristic, max_depth, .. } = *options;
+    let Options { algorithm, heuristic, max_depth, min_depth, .. } = *options;
     match algorithm {
         Algorithm::Fog => return "fog, a preview of first surfaces".to_owned(),
         Algorithm::Gather => {
@@ -253,9 +253,12 @@ fn describe_integrator(name: &str, options: &Options, restriction: Restriction) 
         Restriction::SingleScattering { .. } => ", single scattering",
         Restriction::NonScattering => ", media absorb and emit only",
     };
-    let length = match max_depth {
-        Some(depth) => format!("at most {depth} segments"),
-        None => "any length".to_owned(),
+    let length = match (min_depth, max_depth) {
+        (0 | 1, Some(most)) => format!("at most {most} segments"),
+        (0 | 1, None) => "any length".to_owned(),
+        (least, Some(most)) if least == most => format!("{most} segments"),
+        (least, Some(most)) => format!("{least} to {most} segments"),
+        (least, None) => format!("{least} segments or more"),
     };
     format!("{name}, paths of {length}{media}, weighted by the {heuristic} heuristic")
 }

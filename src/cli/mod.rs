@@ -6,6 +6,7 @@ mod console;
 mod contenders;
 mod convert;
 mod denoise;
+mod depth;
 pub mod diff;
 mod display;
 mod estimator;

@@ -186,7 +186,7 @@ pub fn options_of_learning(options: Options) -> Options {
         effort: Effort::default(),
         connections: Connections::default(),
         heuristic: Heuristic::Balance,
-        max_depth: Some(options.max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST))),
+        max_depth: Some(options.depth_within(DEEPEST)),
         forced_interaction: false,
         ..options
     }

@@ -14,7 +14,7 @@ use crate::{
     settings::{
         Overrides,
         heuristic::HEURISTIC,
-        options::{Algorithm, CONNECTIONS, Connections, FORCED, GUIDE, MAX_DEPTH, Options, PATHS},
+        options::{Algorithm, CONNECTIONS, Connections, FORCED, GUIDE, MAX_DEPTH, MIN_DEPTH, Options, PATHS},
     },
 };
 
@@ -172,7 +172,7 @@ const COMMON: &[Parameter] = rows! {
 
 const BDPT: Table = table! {
     "Bidirectional path tracing, the default. A pilot chooses among its strategies."; ;
-    MAX_DEPTH, PATHS, HEURISTIC, GUIDE, CONNECTIONS, FORCED, COMMON
+    MAX_DEPTH, MIN_DEPTH, PATHS, HEURISTIC, GUIDE, CONNECTIONS, FORCED, COMMON
 };
 
 const SAME: Table = Table { about: "The same as `bdpt`; `--integrator pt` is path tracing.", ..BDPT };
@@ -180,7 +180,7 @@ const SAME: Table = Table { about: "The same as `bdpt`; `--integrator pt` is pat
 const VOLPATHMIS: Table = table! {
     "The same as `bdpt`; `--integrator pt` is path tracing.";
     ignored("use_spectral_mis", "samples are weighted over all channels anyway");
-    MAX_DEPTH, PATHS, HEURISTIC, GUIDE, CONNECTIONS, FORCED, COMMON
+    MAX_DEPTH, MIN_DEPTH, PATHS, HEURISTIC, GUIDE, CONNECTIONS, FORCED, COMMON
 };
 
 const DIRECT: Table = table! {
@@ -189,13 +189,13 @@ const DIRECT: Table = table! {
     ignored("emitter_samples", "the pilot chooses how many samples each strategy takes"),
     ignored("bsdf_samples", "the pilot chooses how many samples each strategy takes"),
     ignored("shading_samples", "the pilot chooses how many samples each strategy takes");
-    PATHS, HEURISTIC, GUIDE, CONNECTIONS, FORCED, COMMON
+    MIN_DEPTH, PATHS, HEURISTIC, GUIDE, CONNECTIONS, FORCED, COMMON
 };
 
 const PTRACER: Table = table! {
     "Light tracing: light subpaths connect to the camera; `--integrator lt`.";
     ignored("forced_interaction", "light subpaths have no primary rays");
-    MAX_DEPTH, PATHS, HEURISTIC, GUIDE, COMMON
+    MAX_DEPTH, MIN_DEPTH, PATHS, HEURISTIC, GUIDE, COMMON
 };
 
 const GATHER: Table = table! {
@@ -218,12 +218,12 @@ const SINGLE_SCATTERING: Table = table! {
     integer("max_depth", within(0.0, Restriction::SINGLE as f64), Is(2.0), "Maximum number of segments of a path."),
     number("step", "m", above(0.0, f64::MAX), Said("that of each medium"), "Step of the ray marching."),
     number("march_error", "", within(1e-7, 1.0), Said("that of each medium"), "Maximum error of transmittance.");
-    PATHS, HEURISTIC, GUIDE, FORCED, COMMON
+    MIN_DEPTH, PATHS, HEURISTIC, GUIDE, FORCED, COMMON
 };
 
 const NON_SCATTERING: Table = table! {
     "Media absorb and emit, but do not scatter; surfaces are unchanged (P03T eq. 2.9)."; ;
-    MAX_DEPTH, PATHS, HEURISTIC, GUIDE, FORCED, COMMON
+    MAX_DEPTH, MIN_DEPTH, PATHS, HEURISTIC, GUIDE, FORCED, COMMON
 };
 
 /// What integrators have that hold another.

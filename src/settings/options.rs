@@ -3,10 +3,11 @@
 use super::heuristic::Heuristic;
 use crate::{
     description::{Params, parameter::Parameter, rows},
-    error::Result,
+    error::{Error, Result},
     sampling::Basis,
 };
 use serde_json::{Map, Value};
+use std::fmt::Display;
 
 /// Which strategies run. Their weights sum to one over those that do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -236,6 +237,8 @@ pub struct Options {
     /// Most segments of a path, null boundaries not counted; none for no limit. Paths beyond
     /// [`Heuristic::most_edges`] are never made.
     pub max_depth: Option<u32>,
+    /// Fewest segments of a path that counts; 0 and 1 leave none out.
+    pub min_depth: u32,
     /// The camera does not see emitters, but what is behind them.
     pub hide_emitters: bool,
     /// Primary rays that cross media are followed both from a collision in them and from what lies behind.
@@ -245,14 +248,32 @@ pub struct Options {
 impl Options {
     /// What a scene or the command line says and no pilot chooses, for reports and checkpoints.
     pub fn json(&self) -> Map<String, Value> {
-        let Self { heuristic, max_depth, hide_emitters, forced_interaction, .. } = *self;
+        let Self { heuristic, max_depth, min_depth, hide_emitters, forced_interaction, .. } = *self;
         let all = [
             ("heuristic", heuristic.to_string().into()),
             ("max_depth", max_depth.into()),
             ("hide_emitters", hide_emitters.into()),
             ("forced_interaction", forced_interaction.into()),
         ];
-        all.into_iter().map(|(name, value): (&str, Value)| (name.to_owned(), value)).collect()
+        // Only where it is one: earlier sums, which know nothing of it, can go on.
+        let least = (min_depth > 1).then(|| ("min_depth", min_depth.into()));
+        all.into_iter().chain(least).map(|(name, value): (&str, Value)| (name.to_owned(), value)).collect()
+    }
+
+    /// The limit of paths, no more than `most` or than the shortest that count.
+    pub fn depth_within(&self, most: u32) -> u32 {
+        let most = most.max(self.min_depth);
+        self.max_depth.map_or(most, |depth| depth.min(most))
+    }
+
+    /// An error at `place` unless some paths count.
+    pub fn check_depths(&self, place: impl Display) -> Result<()> {
+        let Self { max_depth: Some(most), min_depth, .. } = *self else { return Ok(()) };
+        if min_depth <= most.max(1) {
+            return Ok(());
+        }
+        let expected = format!("a number of segments up to the maximum of {most}");
+        Err(Error::new(place, expected, min_depth.to_string(), "make min_depth smaller, or max_depth larger"))
     }
 }
 
@@ -266,6 +287,7 @@ impl Default for Options {
             connections: Connections::default(),
             heuristic: Heuristic::default(),
             max_depth: None,
+            min_depth: 0,
             hide_emitters: false,
             forced_interaction: false,
         }
@@ -292,6 +314,12 @@ pub(super) const MAX_DEPTH: &[Parameter] = rows! {
     integer("max_depth", within(-1.0, MAX), Is(-1.0), "Maximum number of segments of a path; -1: no limit."),
 };
 
+/// What counts below it.
+pub(super) const MIN_DEPTH: &[Parameter] = rows! {
+    integer("min_depth", within(0.0, MAX), Is(0.0),
+        "Minimum number of segments of a path; shorter ones do not count. 2 leaves out emitters in direct view.").ours(),
+};
+
 /// What those have besides that connect camera and light subpaths.
 pub(super) const CONNECTIONS: &[Parameter] = rows! {
     choice("connections", &words::<2, _>(&Connections::NAMES), "cached",
@@ -313,7 +341,7 @@ impl Options {
     /// Reads the parameters of integrators that make paths.
     pub(super) fn read(params: &Params<'_>, algorithm: Algorithm) -> Result<Self> {
         let samples = algorithm != Algorithm::Fog;
-        Ok(Self {
+        let options = Self {
             algorithm,
             strategies: algorithm.strategies(),
             effort: Effort {
@@ -328,9 +356,31 @@ impl Options {
             connections: Connections::default(),
             // Limits that u32 does not hold are none.
             max_depth: u32::try_from(params.integer("max_depth")?).ok(),
+            min_depth: u32::try_from(params.integer("min_depth")?).unwrap_or(u32::MAX),
             hide_emitters: params.boolean("hide_emitters")?,
             forced_interaction: algorithm != Algorithm::Lt && params.boolean("forced_interaction")?,
             heuristic: Heuristic::read(params)?,
-        })
+        };
+        options.check_depths(params.given("min_depth").map_or(params.location(), |given| &given.location))?;
+        Ok(options)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_learnt_from_has_paths_that_count() {
+        let of = |min_depth, max_depth| Options { min_depth, max_depth, ..Options::default() };
+        let within = |min_depth, max_depth| of(min_depth, max_depth).depth_within(50);
+        assert_eq!([within(0, None), within(0, Some(3)), within(0, Some(70))], [50, 3, 50]);
+        assert_eq!([within(3, Some(3)), within(60, None), within(60, Some(90))], [3, 60, 60]);
+        for (least, most, is_good) in [(0, 0, true), (1, 0, true), (2, 1, false), (3, 3, true), (4, 3, false)]
+        {
+            assert_eq!(of(least, Some(most)).check_depths("").is_ok(), is_good, "{least} {most}");
+        }
+        assert!(of(u32::MAX, None).check_depths("").is_ok());
+        assert!(!of(1, None).json().contains_key("min_depth") && of(2, None).json()["min_depth"] == 2);
     }
 }

@@ -121,8 +121,10 @@ impl<P: Profile, R: Observer> Visitor<P> for CameraPath<'_, P, R> {
         if P::MEDIA && self.estimator.counts.equiangular > 0.0 && vertex.subpath.edges == 1 {
             self.first = FirstCollision::of(vertex, self.previous, self.pdf_fwd);
         }
-        if vertex.subpath.edges < self.estimator.max_edges && vertex.is_connectible(self.estimator.scene) {
-            if self.estimator.counts.next_event > 0.0 && !vertex.is_shut_in::<P>(self.estimator.scene) {
+        let (estimator, edges) = (self.estimator, vertex.subpath.edges);
+        if edges < estimator.max_edges && vertex.is_connectible(estimator.scene) {
+            let is_found = estimator.counts.next_event > 0.0 && estimator.joins(edges);
+            if is_found && !vertex.is_shut_in::<P>(estimator.scene) {
                 self.next_event(vertex, stream);
             }
             self.connect_light(vertex, stream);
@@ -131,7 +133,7 @@ impl<P: Profile, R: Observer> Visitor<P> for CameraPath<'_, P, R> {
 
     #[inline]
     fn pass(&mut self, departure: &Departure<P::MisSums>, passed: &Passed<P::Channels>, stream: &mut Stream) {
-        if self.estimator.counts.emitter_hit <= 0.0 {
+        if self.estimator.counts.emitter_hit <= 0.0 || departure.edges < self.estimator.skipped {
             return;
         }
         match passed {
@@ -178,7 +180,7 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
     /// s = 0: the walk has reached an emitter; `found` is the point of it, if it emits this way.
     #[inline]
     fn emission(&mut self, subpath: &Subpath<P::MisSums>, found: impl FnOnce() -> Option<EmitterSample>) {
-        if self.estimator.counts.emitter_hit <= 0.0 {
+        if self.estimator.counts.emitter_hit <= 0.0 || subpath.edges <= self.estimator.skipped {
             return;
         }
         self.observer.start();
@@ -370,7 +372,7 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
         let light = self.light;
         for turn in 0..light.count {
             let (index, other) = light.pick(turn, stream);
-            if vertex.subpath.edges + other.subpath.edges < self.estimator.max_edges {
+            if self.estimator.joins(vertex.subpath.edges + other.subpath.edges) {
                 let (s, t) = (other.subpath.edges + 1, vertex.subpath.edges + 1);
                 self.observer.start();
                 let contribution =

@@ -20,13 +20,16 @@ const VERTICES: u32 = 5;
 pub struct Paths {
     /// Most segments; none for no limit.
     pub max_depth: Option<u32>,
+    /// Fewest segments.
+    pub min_depth: u32,
     /// The camera does not see emitters.
     pub hide_emitters: bool,
 }
 
 impl From<&Options> for Paths {
     fn from(options: &Options) -> Self {
-        Self { max_depth: options.max_depth, hide_emitters: options.hide_emitters }
+        let Options { max_depth, min_depth, hide_emitters, .. } = *options;
+        Self { max_depth, min_depth, hide_emitters }
     }
 }
 
@@ -41,6 +44,8 @@ pub struct Traits {
     rough: bool,
     /// Most segments of a path.
     max_depth: u32,
+    /// Fewest segments of one that counts.
+    min_depth: u32,
 }
 
 /// What of an emitter decides which strategies can start or end at it.
@@ -88,6 +93,7 @@ impl Traits {
             ),
             rough: scatters || bsdfs().any(BsdfModel::is_connectible),
             max_depth: options.max_depth.unwrap_or(u32::MAX),
+            min_depth: options.min_depth,
         }
     }
 
@@ -121,7 +127,8 @@ impl Traits {
     /// Every kind of path, the shortest first.
     fn paths(&self) -> impl Iterator<Item = Path<'_>> + '_ {
         let longest = VERTICES.min(self.max_depth.saturating_sub(1));
-        let counts = (self.max_depth > 0).then_some(0..=longest).into_iter().flatten();
+        let shortest = longest.min(self.min_depth.saturating_sub(1));
+        let counts = (self.max_depth > 0).then_some(shortest..=longest).into_iter().flatten();
         counts.flat_map(move |count| {
             let patterns =
                 (0..1u32 << count).map(move |bits| (0..count).map(|i| bits >> i & 1 == 1).collect());
@@ -312,7 +319,13 @@ mod tests {
             _ => (*traits, vec!["directionalarea"]),
         };
         let smooth = smooth.then_some("smooth glass");
-        Traits { emitters: emitters.iter().map(named).collect(), smooth, rough: true, max_depth: u32::MAX }
+        Traits {
+            emitters: emitters.iter().map(named).collect(),
+            smooth,
+            rough: true,
+            max_depth: u32::MAX,
+            min_depth: 0,
+        }
     }
 
     fn set(names: &str) -> Strategies {
@@ -390,5 +403,10 @@ mod tests {
         let direct = Traits { max_depth: 1, ..traits(&[LAMP], true) };
         assert_eq!(direct.missing(set("lens"), Strategies::BDPT), None);
         assert!(direct.missing(set("next-event,join"), Strategies::BDPT).unwrap().ends_with("seen directly"));
+        let long = |min_depth| Traits { min_depth, ..traits(&[LAMP], false) };
+        assert_eq!(long(2).missing(set("next-event"), Strategies::BDPT), None);
+        assert_eq!(long(100).missing(set("next-event"), Strategies::BDPT), None);
+        assert_eq!(long(3).missing(Strategies::NONE, set("join")).is_some(), true);
+        assert_eq!(Traits { max_depth: 2, ..long(0) }.missing(Strategies::NONE, set("join")), None);
     }
 }

@@ -44,7 +44,12 @@ pub struct Estimator<'a, P: Profile> {
     pub(super) connections: Connections,
     /// Probability that a light vertex is kept for connections.
     pub(super) keep: f32,
+    /// Most segments of a path.
     pub(super) max_edges: u32,
+    /// Paths of so many segments, and shorter ones, do not count.
+    pub(super) skipped: u32,
+    /// So many lengths of paths do.
+    pub(super) counted: u32,
     pub(super) hide_emitters: bool,
     pub(super) forced_interaction: bool,
     /// Which starts of light subpaths reach the image; none if they start as their emitters would have it.
@@ -59,6 +64,12 @@ pub struct Estimator<'a, P: Profile> {
 }
 
 impl<P: Profile> Estimator<'_, P> {
+    /// True if a path counts that is made of subpaths of so many segments together, and one more that connects them.
+    #[inline]
+    pub(super) fn joins(&self, edges: u32) -> bool {
+        edges.wrapping_sub(self.skipped) < self.counted
+    }
+
     /// The strategies of `kind`, as the weights use them.
     #[inline]
     pub(super) fn strategy(&self, kind: StrategyKind) -> Strategy {
@@ -105,7 +116,7 @@ impl<P: Profile> Estimator<'_, P> {
 
     /// True if the first vertex of a light subpath is connected to the lens, see [`Strategies::runs`](super::Strategies::runs).
     pub(super) fn starts_seen(&self) -> bool {
-        self.counts.lens > 0.0 && self.counts.emitter_hit <= 0.0
+        self.counts.lens > 0.0 && self.counts.emitter_hit <= 0.0 && self.skipped == 0
     }
 
     /// The light vertices for a camera subpath of channel `hero`, which may have light subpath number `walk` of the cache for

@@ -138,7 +138,8 @@ impl<P: Profile, R: Observer> Visitor<P> for LightPath<'_, P, R> {
         if !vertex.is_connectible(self.estimator.scene) {
             return;
         }
-        if self.estimator.counts.lens > 0.0 && !vertex.is_shut_in::<P>(self.estimator.scene) {
+        let is_seen = self.estimator.counts.lens > 0.0 && self.estimator.joins(vertex.subpath.edges);
+        if is_seen && !vertex.is_shut_in::<P>(self.estimator.scene) {
             let aperture = self.estimator.scene.sensor.sample_aperture(stream);
             self.observer.start();
             let contribution = self.connect_to_lens(vertex, aperture, stream);

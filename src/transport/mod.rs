@@ -129,10 +129,13 @@ impl<'a, P: Profile> Estimator<'a, P> {
         walks_per_pass: u64,
         walks_per_block: u64,
     ) -> Self {
-        let Options { strategies, effort, connections, heuristic, max_depth, .. } = options;
+        let Options { strategies, effort, connections, heuristic, max_depth, min_depth, .. } = options;
         let Options { hide_emitters, forced_interaction, .. } = options;
         let lit = !scene.lights.is_empty();
         let count = |on: bool, n: f32| if on && lit { n } else { 0.0 };
+        let max_edges = max_depth.unwrap_or(u32::MAX).min(P::MisSums::MOST_EDGES);
+        let skipped = min_depth.saturating_sub(1).min(max_edges);
+        let equiangular = strategies.equiangular && skipped < 2;
         let mut estimator = Self {
             scene,
             counts: Counts {
@@ -140,7 +143,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
                 next_event: count(strategies.next_event, 1.0),
                 connection: 0.0,
                 lens: count(strategies.lens, walks_per_pass as f32),
-                equiangular: count(P::MEDIA && strategies.equiangular && equiangular_applies(scene), 1.0),
+                equiangular: count(P::MEDIA && equiangular && equiangular_applies(scene), 1.0),
             },
             heuristic,
             survival: effort.survival,
@@ -148,7 +151,9 @@ impl<'a, P: Profile> Estimator<'a, P> {
             connections_per_vertex: 0,
             connections,
             keep: 0.0,
-            max_edges: max_depth.unwrap_or(u32::MAX).min(P::MisSums::MOST_EDGES),
+            max_edges,
+            skipped,
+            counted: max_edges - skipped,
             hide_emitters,
             forced_interaction: P::MEDIA && forced_interaction,
             starts: learnt.starts,

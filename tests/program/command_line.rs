@@ -169,6 +169,8 @@ fn integrators_that_do_less_say_so() {
     assert!(sandbox.run("info scene.json").ends(0).out().contains("fog, a preview"));
     let reported = sandbox.run("render scene.json --max-depth 3").ends(0).err();
     assert!(reported.contains("--max-depth has no effect"), "{reported}");
+    let reported = sandbox.run("render scene.json --min-depth 3").ends(0).err();
+    assert!(reported.contains("--min-depth has no effect"), "{reported}");
     sandbox.run("render scene.json --strategies hit").refuses(&["--strategies"]);
     let sandbox = with_integrator(json!({"type": "single_scattering", "step": 0.05}));
     let reported = sandbox.run("info scene.json").ends(0).out();
@@ -177,6 +179,7 @@ fn integrators_that_do_less_say_so() {
         "{reported}"
     );
     sandbox.run("render scene.json --max-depth 3").refuses(&["--max-depth", "single_scattering"]);
+    sandbox.run("render scene.json --min-depth 3").refuses(&["--min-depth", "maximum of 2", "found 3"]);
     let sandbox = with_integrator(json!({"type": "non_scattering"}));
     let reported = sandbox.run("info scene.json").ends(0).out();
     assert!(

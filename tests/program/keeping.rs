@@ -162,9 +162,12 @@ fn what_is_no_part_of_the_image_is_refused() {
     good(render(&sandbox, "--samples 0..2 --sums a.sums"));
     good(render(&sandbox, "--samples 1..3 --sums b.sums"));
     refused(sandbox.run("merge a.sums b.sums -o x.exr"), &["b.sums", "samples 1..3"]);
-    for (words, differs) in
-        [("--seed 1", "seed"), ("--integrator pt", "strategies"), ("--max-depth 3", "max_depth")]
-    {
+    for (words, differs) in [
+        ("--seed 1", "seed"),
+        ("--integrator pt", "strategies"),
+        ("--max-depth 3", "max_depth"),
+        ("--min-depth 2", "min_depth"),
+    ] {
         good(render(&sandbox, &format!("--samples 2..3 --sums c.sums {words}")));
         refused(sandbox.run("merge a.sums c.sums -o x.exr"), &["c.sums", differs]);
         refused(render(&sandbox, &format!("--spp 9 --resume --sums a.sums {words}")), &["a.sums", differs]);

@@ -138,6 +138,15 @@ fn info_shows_the_plan_of_any_integrator() {
     let run = sandbox.run("info scene.json --integrator lt --max-depth 3").ends(0);
     assert!(run.out().contains("integrator  lt, paths of at most 3 segments"), "{}", run.out());
     assert!(run.out().contains("plan        lt (lens"), "{}", run.out());
+    for (words, length) in [
+        ("--min-depth 1", "any length"),
+        ("--min-depth 3", "3 segments or more"),
+        ("--min-depth 2 --max-depth 3", "2 to 3 segments"),
+        ("--min-depth 3 --max-depth 3", "3 segments"),
+    ] {
+        let out = sandbox.run(&format!("info scene.json --integrator pt {words}")).ends(0).out();
+        assert!(out.contains(&format!("integrator  pt, paths of {length}, weighted")), "{words}: {out}");
+    }
     sandbox.run("info scene.json --integrator pt --strategies lens").refuses(&["--strategies"]);
 }
 

@@ -261,3 +261,30 @@ fn kinds_are_called_as_they_are_typed() {
         assert_eq!(code, Some(0), "{err}");
     }
 }
+
+/// What is too short to count is in no share of it, and what is seen first is as it was.
+#[test]
+fn paths_that_do_not_count_have_no_share() {
+    let mut scene = foggy_room(medium(1.0, 0.8, 0.3));
+    scene["integrator"] =
+        json!({"type": "aov", "aovs": "n:sh_normal d:depth", "inner": {"type": "bdpt", "min_depth": 3}});
+    let sandbox = Sandbox::with_scene(&scene);
+    sandbox.run("strategies scene.json --spp 4 --pilots 0 -o out").ends(0);
+    let found = sandbox.json("out/strategies.json");
+    for cell in found["cells"].as_array().unwrap() {
+        let counts = cell["length"].as_u64().is_none_or(|length| length >= 3);
+        let tries = cell["tries"].as_f64().unwrap();
+        assert!(counts || tries == 0.0 && cell["energy"] == 0.0, "{cell}");
+    }
+    let lengths: f64 = found["cells"].as_array().unwrap().iter().map(|c| c["energy"].as_f64().unwrap()).sum();
+    assert!((lengths - 1.0).abs() < 1e-3, "{lengths}");
+    sandbox.run("render scene.json --spp 4 -o long.exr").ends(0);
+    sandbox.run("render scene.json --spp 4 --min-depth 0 -o all.exr").ends(0);
+    let [long, all] = ["long.exr", "all.exr"].map(|name| sandbox.channels(name));
+    let mean = |values: &[f32]| values.iter().sum::<f32>();
+    assert!(mean(&long["R"]) < 0.8 * mean(&all["R"]) && long["inner.A"] == all["inner.A"]);
+    let first: Vec<&String> =
+        all.keys().filter(|name| name.starts_with("n.") || name.starts_with("d.")).collect();
+    assert_eq!(first.len(), 4, "{:?}", all.keys());
+    assert!(first.iter().all(|name| long[*name] == all[*name]));
+}

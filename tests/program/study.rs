@@ -443,6 +443,16 @@ fn the_reference_is_as_deep_as_the_deepest_contender() {
         let how = study["scenes"][0]["reference"]["how"].as_str().unwrap();
         assert!(how.contains(depth), "{words:?}: {how}");
     }
+    let long = ["--vary", "integrator=pt", "--vary", "min-depth=2"];
+    desk.study(&[&["room.json", "-o", "long"], &quick[..], &long].concat());
+    let study = desk.json("long/study.json");
+    let how = study["scenes"][0]["reference"]["how"].as_str().unwrap();
+    assert!(how.contains("--min-depth 2"), "{how}");
+    let by = ["--vary", "min-depth=0,2", "--reference-by", "--integrator pt --min-depth 3"];
+    desk.refuses(
+        &[&["room.json", "-o", "least"], &quick[..], &by].concat(),
+        &["--reference-by", "all contenders, --min-depth 1", "found --min-depth 3"],
+    );
     let by = ["--vary", "max-depth=2,7", "--reference-by", "--integrator pt --max-depth 3"];
     desk.refuses(
         &[&["room.json", "-o", "by"], &quick[..], &by].concat(),

@@ -7,6 +7,7 @@ mod adaptive;
 mod agreement;
 mod beams;
 mod components;
+mod depths;
 mod determinism;
 mod efforts;
 mod equiangular;

@@ -109,9 +109,22 @@ fn depth(entry: &Entry) -> Option<u32> {
     entry.estimator().map(|(_, options)| options.max_depth.unwrap_or(u32::MAX))
 }
 
-/// Refuses a reference without the light of longer paths that a contender has.
+/// Edges of the shortest.
+fn least_depth(entry: &Entry) -> Option<u32> {
+    entry.estimator().map(|(_, options)| options.min_depth.max(1))
+}
+
+/// Refuses a reference without the light of longer or shorter paths that a contender has.
 fn check_depth(entry: &Entry, contenders: &[Option<&Entry>]) -> Result<()> {
     let deepest = contenders.iter().flatten().filter_map(|entry| depth(entry)).max();
+    let least = contenders.iter().flatten().filter_map(|entry| least_depth(entry)).min();
+    if let (Some(found), Some(least)) = (least_depth(entry), least)
+        && found > least
+    {
+        let expected = format!("paths as short as those of all contenders, --min-depth {least}");
+        let remedy = format!("add --min-depth {least} to the options of the reference");
+        return Err(Error::new("--reference-by", expected, format!("--min-depth {found}"), remedy));
+    }
     match (depth(entry), deepest) {
         (Some(found), Some(deepest)) if found < deepest => {
             let shown = if deepest == u32::MAX { "-1".to_owned() } else { deepest.to_string() };
@@ -143,7 +156,9 @@ fn choose(
     let own: Vec<(&How, &Entry)> =
         able.filter_map(|(contender, entry)| Some((&contender.how, (*entry)?))).collect();
     let deepest = own.iter().filter_map(|(_, entry)| depth(entry)).max();
-    let is_deep = |entry: &Entry| depth(entry).is_none() || depth(entry) == deepest;
+    let least = own.iter().filter_map(|(_, entry)| least_depth(entry)).min();
+    let is_deep =
+        |entry: &Entry| depth(entry).is_none() || depth(entry) == deepest && least_depth(entry) == least;
     let deep: Vec<_> = own.iter().filter(|(_, entry)| is_deep(entry)).collect();
     let good: Vec<_> = deep.iter().filter(|(_, entry)| is_good(entry)).collect();
     let variance = |entry: &Entry| plan::variance(entry, question.first_seed);

@@ -189,11 +189,10 @@ impl Pilots<'_> {
     fn fly(&self, learnt_starts: bool) -> Forecast {
         let Choice { effort, .. } = self.base;
         let effort = Effort { survival: self.survivals()[0], learnt_starts, ..effort };
-        let max_depth = self.settings.options.max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST));
         let options = Options {
             strategies: self.strategies(),
             effort,
-            max_depth: Some(max_depth),
+            max_depth: Some(self.settings.options.depth_within(DEEPEST)),
             ..self.settings.options
         };
         let settings = Settings { options, seed: SEED, sampler: Sampler::Independent, ..*self.settings };

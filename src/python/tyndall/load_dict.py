@@ -41,7 +41,7 @@ def translated(o: dict[str, Any]) -> dict[str, Any]:
     """What `mitsuba.load_dict` needs otherwise than our JSON spells it."""
     kind = o["type"]
     if kind in OUR_INTEGRATORS:
-        kept: dict[str, Any] = {key: o[key] for key in ("max_depth", "rr_depth", "hide_emitters") if key in o}
+        kept: dict[str, Any] = {key: o[key] for key in ("max_depth", "min_depth", "rr_depth", "hide_emitters") if key in o}
         return {"type": "volpath", "rr_depth": ROULETTE[o.get("max_depth", -1) < 0], **kept}
     out = {key: parameter(key, value) for key, value in o.items() if key not in OURS.get(kind, ()) and key not in files(o)}
     return out | {HOLDERS[name]: holder(name, o[key]) for key, name in files(o).items()}

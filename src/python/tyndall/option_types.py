@@ -21,6 +21,7 @@ class RenderOptions(TypedDict, total=False):
     integrator: Literal["bdpt", "pt", "lt", "fog", "gather", "path", "volpath", "volpathmis", "ptracer"] | None
     strategies: str | Sequence[str] | None
     max_depth: int | None
+    min_depth: int | None
     sampler: Literal["sobol", "independent"] | None
     guide: Literal["auto", "always", "never"] | bool | None
     heuristic: str | None

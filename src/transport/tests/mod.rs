@@ -45,6 +45,7 @@ const ALL: Options = Options {
     connections: Connections::Cached,
     heuristic: Heuristic::Balance,
     max_depth: None,
+    min_depth: 0,
     hide_emitters: false,
     forced_interaction: false,
 };
