@@ -406,7 +406,7 @@ mod tests {
         let long = |min_depth| Traits { min_depth, ..traits(&[LAMP], false) };
         assert_eq!(long(2).missing(set("next-event"), Strategies::BDPT), None);
         assert_eq!(long(100).missing(set("next-event"), Strategies::BDPT), None);
-        assert_eq!(long(3).missing(Strategies::NONE, set("join")).is_some(), true);
+        assert!(long(3).missing(Strategies::NONE, set("join")).is_some());
         assert_eq!(Traits { max_depth: 2, ..long(0) }.missing(Strategies::NONE, set("join")), None);
     }
 }
