@@ -76,7 +76,7 @@ pub enum Command {
     /// that most pixels see (azimuth to the right, +z downwards; equal areas are equal solid angles; yellow is a
     /// thousand times as likely as evenly spread directions, black a hundredth).
     Guide(guide::Arguments),
-    /// Write the paths of one pixel's samples as JSON, for debugging
+    /// Write the paths of one pixel's samples, or those that make single bright pixels (--outliers), as JSON
     ///
     /// The samples are those of a render with the same seed, size and options: the same camera subpaths and the
     /// same light vertices. Every vertex is listed with its pdfs and every contribution with its weight; the

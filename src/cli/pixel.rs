@@ -94,7 +94,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
             let settings = settings(u64::from(first) + u64::from(samples))?;
             let plan = Plan { most: usize::from(most), first, samples };
             let bar = console::bar(u64::from(samples));
-            let mut show = |done| bar.set_position(done);
+            let mut show = |done| {
+                bar.set_position(done);
+                let share = || serde_json::json!({ "done": done as f64 / f64::from(samples) });
+                console::update(done == u64::from(samples), share);
+            };
             let found = pool.install(|| outliers::examine(&setup, &settings, &plan, &mut show))?;
             bar.finish_and_clear();
             let Some(path) = &arguments.output else { return give(arguments, &found.json()) };

@@ -226,6 +226,8 @@ fn file_table_and_page_tell_the_same() {
     let [x, y] = [0, 1].map(|i| outliers[0]["pixel"][i].as_u64().unwrap());
     assert!(out.contains(&format!("1. pixel {x} {y}, sample")) && out.ends_with("told.json\n"), "{out}");
     assert!(out.contains("surface floor of diffuse"), "{out}");
+    let (_, _, lines) = run("-o told.json --progress json");
+    assert_eq!(lines.lines().last(), Some("{\"done\":1.0}"), "{lines}");
     let (_, again, _) = run("-o told.html");
     assert_eq!(again.replace("told.html", "told.json"), out);
     let page = html::parse(&sandbox.text("told.html"));

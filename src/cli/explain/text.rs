@@ -20,7 +20,7 @@ the lines of JSON that --progress json prints on standard error, ten a second at
   within             the share of the pixels within --error; null without it
   seconds            the time since the render began
   image              the frame or batch at hand; null if there is one image
-  study says what it is doing (\"doing\") in place of samples and noise; strategies prints \"done\" alone.
+  study says what it is doing (\"doing\") in place of samples and noise; strategies and pixel print \"done\" alone.
   With --quiet, all other lines are warnings and errors. If standard error is closed, the render ends as on Ctrl-C.";
 /// How they are written, and what they mean.
 pub(super) const KEYFRAMES_WRITTEN: &str = r#"
