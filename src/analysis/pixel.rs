@@ -11,7 +11,7 @@ use crate::{
     error::{Error, Result},
     math::{Spectrum, Vec3},
     medium::MediumIndex,
-    render::{Settings, instrument::Instrument},
+    render::{Settings, Stage},
     scene::{
         build::Setup,
         lights::{EmitterPoint, EmitterSample},
@@ -39,15 +39,18 @@ pub fn examine(
         }
     }
     super::check_paths(settings.options.algorithm)?;
-    let instrument = Instrument::new(&setup.scene, film, settings);
+    let stage = Stage::of(setup, film, settings);
     let pixel = y as usize * film.width as usize + x as usize;
     let numbers = u64::from(first)..u64::from(first) + u64::from(count);
     let max_depth = settings.options.max_depth;
     let samples = numbers.map(|number| {
-        describe(setup, max_depth, number, &PixelSample::of(&instrument, number as usize, pixel))
+        stage.show(number, |instrument, _| {
+            describe(setup, max_depth, number, &PixelSample::of(instrument, number as usize, pixel))
+        })
     });
+    let samples = samples.collect::<Result<_>>()?;
     let made_by = concat!("Tyndall ", env!("CARGO_PKG_VERSION")).to_owned();
-    Ok(Pixel { made_by, pixel: [x, y], seed: settings.seed, samples: samples.collect() })
+    Ok(Pixel { made_by, pixel: [x, y], seed: settings.seed, samples })
 }
 
 impl Pixel {

@@ -19,7 +19,7 @@ mod turns;
 
 pub use crate::passes::Settings;
 pub use image::{Image, Precision, Progress, Reached, Snapshot};
-pub use subject::Subject;
+pub use subject::{Stage, Subject};
 
 use crate::{
     error::Result,
@@ -35,7 +35,6 @@ use known::{Known, late};
 use monitor::{Monitor, Stopwatch};
 use seen::Seen;
 use std::time::{Duration, Instant};
-use subject::Stage;
 use sums::{AnySums, Halves, Kept, Sums, samples::Samples};
 
 /// Renders `subject` onto `film`, reporting to `progress` now and then.

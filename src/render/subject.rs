@@ -30,7 +30,7 @@ impl<'a> From<&'a Setup> for Subject<'a> {
 }
 
 /// Who makes the passes of a render.
-pub(super) struct Stage<'a> {
+pub struct Stage<'a> {
     /// That of the scene halfway through the exposure, by which all that is learnt is learnt.
     pub instrument: Instrument<'a>,
     moving: Option<&'a Setup>,
@@ -38,6 +38,7 @@ pub(super) struct Stage<'a> {
 }
 
 impl<'a> Stage<'a> {
+    /// That of `subject` on `film`; with a `precision`, of a render to that.
     pub(super) fn new(
         subject: Subject<'a>,
         film: &'a Film,
@@ -54,6 +55,11 @@ impl<'a> Stage<'a> {
         Self { instrument, moving, layers }
     }
 
+    /// That of `subject` without layers.
+    pub fn of(subject: impl Into<Subject<'a>>, film: &'a Film, settings: &Settings) -> Self {
+        Self::new(subject.into(), film, settings, &[], None)
+    }
+
     /// One whose scene stands still.
     pub(super) fn still(instrument: Instrument<'a>) -> Self {
         Self { instrument, moving: None, layers: &[] }
@@ -61,7 +67,7 @@ impl<'a> Stage<'a> {
 
     /// Has `make` make `pass` and those behind it, as many as it is told at most, by an instrument that sees the scene as
     /// they do.
-    pub(super) fn show<T>(&self, pass: u64, make: impl FnOnce(&Instrument<'_>, usize) -> T) -> Result<T> {
+    pub fn show<T>(&self, pass: u64, make: impl FnOnce(&Instrument<'_>, usize) -> T) -> Result<T> {
         let moment = self.moving.and_then(|setup| setup.moment(self.instrument.settings.seed, pass));
         let Some(moment) = moment.transpose()? else { return Ok(make(&self.instrument, usize::MAX)) };
         let instrument = self.instrument.seeing(&moment.scene, pass as usize).sorting(self.layers);

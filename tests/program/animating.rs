@@ -176,3 +176,18 @@ fn an_open_shutter_changes_nothing_that_stands_still() {
     sandbox.run("render scene.json -o open.exr --spp 2").ends(0);
     assert_eq!(sandbox.channels("still.exr"), sandbox.channels("open.exr"));
 }
+
+#[test]
+fn samples_of_a_pixel_are_those_of_the_image() {
+    let mut scene = blurred();
+    scene["integrator"] = json!({"type": "path"});
+    scene["sensor"]["film"]["rfilter"] = json!({"type": "box"});
+    let sandbox = Sandbox::with_scene(&scene);
+    sandbox.run("render scene.json -o a.exr --spp 5 --strategies hit,next-event").ends(0);
+    let paths = sandbox.run("pixel scene.json 3 4 --samples 5 --strategies hit,next-event").ends(0).out();
+    let paths: Value = serde_json::from_str(&paths).unwrap();
+    let red = |sample: &Value| sample["value"][0].as_f64().unwrap();
+    let mean = paths["samples"].as_array().unwrap().iter().map(red).sum::<f64>() / 5.0;
+    let found = f64::from(sandbox.channels("a.exr")["R"][4 * 8 + 3]);
+    assert!(found > 0.0 && (mean / found - 1.0).abs() < 1e-5, "{mean} {found}");
+}

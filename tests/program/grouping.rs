@@ -79,7 +79,7 @@ fn groups_are_layers_whatever_a_render_is_cut_into() {
 fn groups_stop_with_their_pixels() {
     let sandbox = Sandbox::with_scene(&lamps());
     let render = |words: &str| {
-        sandbox.run(&format!("render scene.json --size 12x10 --error 0.5 {words}")).ends(0);
+        sandbox.run(&format!("render scene.json --size 12x10 --error 0.5 {ALIKE} {words}")).ends(0);
     };
     render("--groups --spp 400 -o all.exr");
     assert_whole(&sandbox, "all.exr");

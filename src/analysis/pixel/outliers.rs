@@ -18,7 +18,7 @@ use crate::{
     film::moments::Moments,
     math::SpectrumExt,
     memory,
-    render::{Settings, instrument::Instrument},
+    render::{Settings, Stage},
     scene::build::Setup,
 };
 use path::replay;
@@ -52,14 +52,15 @@ pub fn examine(
     let size = format!("{} x {} pixels", film.width, film.height);
     let remedy = "use a smaller --size";
     memory::check("tyndall pixel --outliers", "an image", &size, Some(film.bytes(NUMBERS)), remedy)?;
-    let instrument = Instrument::new(&setup.scene, film, settings);
+    let stage = Stage::of(setup, film, settings);
     let first = plan.first as usize;
     let samples = first..first + plan.samples as usize;
-    let (found, moments) = search(&instrument, samples, progress);
+    let (found, moments) = search(&stage, samples, progress)?;
     let image = Image::of(&moments);
     let mut outliers = Vec::new();
     for one in image.worst(found, plan.most) {
-        let sample = PixelSample::of(&instrument, one.sample as usize, one.pixel as usize);
+        let (number, pixel) = (one.sample as usize, one.pixel as usize);
+        let sample = stage.show(number as u64, |instrument, _| PixelSample::of(instrument, number, pixel))?;
         outliers.extend(replay(setup, &sample, &one).map(|outlier| image.judge(&one, &sample, outlier)));
     }
     outliers.sort_by(|a, b| b.error_share.partial_cmp(&a.error_share).unwrap_or(Ordering::Equal));

@@ -1,6 +1,7 @@
 //! The brightest contribution to each pixel among all those that a render adds up.
 
 use crate::{
+    error::Result,
     film::{Film, moments::Moments},
     math::{Spectrum, SpectrumExt, Vec2},
     passes::{
@@ -8,7 +9,7 @@ use crate::{
         observe::BlockObserver,
         pass::{Outcome, Pass},
     },
-    render::instrument::Instrument,
+    render::Stage,
     transport::{
         Contribution,
         observer::{Meeting, Observer},
@@ -143,15 +144,15 @@ fn keep(brightest: &mut Option<Found>, one: Found) {
 
 /// The brightest contribution to `samples` of each pixel, and the image of them. Says how many samples are done.
 pub(super) fn search(
-    instrument: &Instrument<'_>,
+    stage: &Stage<'_>,
     samples: Range<usize>,
     progress: &mut dyn FnMut(u64),
-) -> (Vec<Found>, Moments) {
-    let film = instrument.film;
+) -> Result<(Vec<Found>, Moments)> {
+    let film = stage.instrument.film;
     let (mut pass, mut moments) = (Pass::new(film.len()), Moments::new(film.len()));
     let mut brightest = vec![None; film.len()];
     let see = |sample| Block::new(film, sample as u64);
-    instrument.observe(samples, see, |Block { light, found, pixels, .. }, ends_pass| {
+    let mut take = |Block { light, found, pixels, .. }: Block<'_>, ends_pass| {
         pass.add(&Outcome::of_parts(pixels, light.pixels, Vec::new()));
         let all = light.found.into_iter().chain(found);
         all.for_each(|one| keep(&mut brightest[one.pixel as usize], one));
@@ -159,6 +160,14 @@ pub(super) fn search(
             pass.finish(|image| moments.add(image));
             progress(moments.passes());
         }
-    });
-    (brightest.into_iter().flatten().collect(), moments)
+    };
+    let mut next = samples.start;
+    while next < samples.end {
+        next = stage.show(next as u64, |instrument, most| {
+            let end = samples.end.min(next.saturating_add(most));
+            instrument.observe(next..end, see, &mut take);
+            end
+        })?;
+    }
+    Ok((brightest.into_iter().flatten().collect(), moments))
 }
