@@ -175,10 +175,10 @@ def add_page(commands: Commands) -> None:
 def add_stability(commands: Commands) -> None:
     command = add(commands, "stability", run_stability, "Extremes of every number that a scene gives, each against truth.")
     command.add_argument("--only", default="", help="only lines whose row or case contains this, or A|B")
-    command.add_argument("--quick", action="store_true", help="fewer samples: many lines then resolve less than asked")
-    command.add_argument("--batches", type=int, default=12, help="independent images of each line (default %(default)s)")
-    command.add_argument("--spp", type=int, help="most samples a pixel in each, times the line's own factor (default 2048, quick 128)")
+    command.add_argument("--quick", action="store_true", help="a tenth of the time: many lines are then not decided")
     command.add_argument("--seed", type=int, default=1, help="first seed (default %(default)s)")
+    command.add_argument("--workers", type=int, help="lines that are rendered at once, a thread each (default: one for each processor)")
+    command.add_argument("--anew", action="store_true", help="render lines again that this very program has rendered before")
     command.add_argument(
         "--perturb", type=float, default=0, metavar="PART", help="make all that is found greater by this part: holds if every line that can see so much refuses it"
     )
@@ -188,10 +188,9 @@ def add_stability(commands: Commands) -> None:
 def run_stability(options: argparse.Namespace) -> bool:
     from validation.stability import run as stability  # it makes scenes' volumes, which no other command needs
 
-    if options.batches < 2:
-        raise Failure("--batches is below 2: no variance can be known", "give at least 8")
-    effort = stability.Effort(options.batches, options.spp or (128 if options.quick else 2048), options.seed)
-    return stability.run(effort, options.output, options.only, options.perturb, quick=options.quick)
+    part = 0.1 if options.quick else 1
+    effort = stability.Effort(part * stability.BUDGET, part * stability.CAP, options.seed, options.perturb)
+    return stability.run(effort, options.output, options.only, options.quick, options.workers, options.anew)
 
 
 def add_cluster(commands: Commands) -> None:

@@ -71,13 +71,24 @@ def tyndall_renderer(scene: Scene, method: str, size: Size = None, threads: int 
 
 
 def options_of(method: str) -> dict[str, Any]:
-    """A method's options: it is an integrator, with strategies after a slash, `+guide` if walks shall follow one, and, after a colon, a
-    tracker that all media shall use. `bdpt` takes all strategies, whether or not a pilot finds them worth their time."""
+    """A method's options: it is an integrator, with strategies after a slash, any of `CHOICES` after a plus each, and, after a
+    colon, a tracker that all media shall use. `bdpt` takes all strategies, whether or not a pilot finds them worth their time."""
     walks, _, tracker = method.partition(":")
-    walks, _, guide = walks.partition("+")
+    walks, *choices = walks.split("+")
     integrator, _, strategies = walks.partition("/")
     usual = tyndall.ALL_STRATEGIES if integrator == "bdpt" else None
-    return {"integrator": integrator, "strategies": strategies or usual, "tracker": tracker or None, "guide": "always" if guide else None}
+    options: dict[str, Any] = {"integrator": integrator, "strategies": strategies or usual, "tracker": tracker or None}
+    return options | {name: value for choice in choices for name, value in CHOICES[choice].items()}
+
+
+CHOICES: dict[str, dict[str, Any]] = {
+    "guide": {"guide": "always"},
+    "learnt": {"starts": "learnt"},
+    "sky": {"sky": "hit"},
+    "pilot": {"strategies": None},
+}
+"""Of how paths are sampled: walks that follow a guide, light subpaths that start where it pays, a sky that is only hit, and all
+that a pilot of `bdpt` finds worth its time."""
 
 
 def candidate_renderer(scene: Scene, method: str, size: Size = None, threads: int | None = None) -> Renderer:

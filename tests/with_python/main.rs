@@ -42,7 +42,7 @@ const LINES: &str = "glowing slab, b|albedo 0.9, b 100000|albedo 0.9, b 1e|white
 /// Extremes of every number that a scene gives, against theory.
 #[test]
 fn extremes_are_as_theory_says() {
-    must_hold(&["stability", "--quick", "--batches", "8", "--only", LINES]);
+    must_hold(&["stability", "--quick", "--only", LINES]);
 }
 
 /// Its statistics, its way around this program, its pages and its type hints.

@@ -28,9 +28,7 @@ def slabs() -> list[Case]:
 def half_space() -> Case:
     """So deep that 9e-4 of the light is lost on the way, and all that is not comes back."""
     source = moved(lit_slab(Slab(NEARLY, DEEP, 0), "UR1", -1.5), AWAY)
-    few = {"pt/hit": 0.02, "pt": 0.01, "bdpt": 0.006}
-    told = "walks have thousands of vertices"
-    return Case(ROW, f"slab UR1, albedo 1 - 1e-7, b {DEEP:g}", source, reflectance(NEARLY), few, "H function", 0.15, told)
+    return Case(ROW, f"slab UR1, albedo 1 - 1e-7, b {DEEP:g}", source, reflectance(NEARLY), ("pt/hit", *EYE), "H function")
 
 
 def equilibria() -> list[Case]:

@@ -1,6 +1,6 @@
 """One line of the stability table, and the scenes that its groups share."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,20 +8,36 @@ import numpy as np
 
 from tyndall.scene import Scene, derived
 from validation.closed_forms.case import BLACK, ISOTROPIC, NULL, SIZE, camera, medium, orthographic, rgb, scene
-from tyndall.statistics import Estimate, exact
 
-Known = float | np.ndarray | Estimate
-"""Anything that broadcasts to height x width x 3; with its own error where it has one."""
+@dataclass(frozen=True)
+class Sampled:
+    """A truth with an error of its own: independent batches, each of which broadcasts to height x width x 3."""
+
+    batches: np.ndarray
+
+
+Known = float | np.ndarray | Sampled
+"""Anything that broadcasts to height x width x 3."""
 Truth = Known | Callable[[], Known]
 """What is known, or what makes it: for truths that take time."""
 
-EYE = {"pt": 1.0, "bdpt": 1.0}
+EYE = ("pt", "bdpt")
 """Methods for scenes that light tracing sees next to nothing of: a view as narrow as a beam."""
-ALL = {"pt": 1.0, "bdpt": 1.0, "lt": 1.0}
-LIGHT_RESOLVES = 0.06
-"""What light tracing must resolve: its noise is several times that of the others."""
-TRACKERS = ("exact", "march", "null_collision")
+ALL = ("pt", "bdpt", "lt")
+AIM, LIGHT_AIM = 0.02, 0.06
+"""The relative error that a line is rendered to see, as far as its time allows; light tracing is several times as noisy."""
+TRACKERS = ("exact", "march", "null_collision", "residual_ratio")
 """Of grids."""
+
+
+def same(images: np.ndarray) -> np.ndarray:
+    """Images as they are."""
+    return images
+
+
+def mean(images: np.ndarray) -> np.ndarray:
+    """Of each image its mean, everywhere: for truths that are one."""
+    return np.broadcast_to(images.mean(axis=(1, 2), keepdims=True), (len(images), SIZE, SIZE, images.shape[-1]))
 
 
 @dataclass(frozen=True)
@@ -33,39 +49,30 @@ class Case:
     name: str
     scene: Scene
     truth: Truth
-    methods: Mapping[str, float]
-    """Integrators, with strategies after a slash and a tracker after a colon, each with its samples relative to the usual."""
+    methods: tuple[str, ...]
+    """As `compare.options_of` reads them."""
     source: str
     """Where the truth comes from."""
-    resolves: float = 0.02
-    """The relative error that must not go unseen at full effort; above 0.02 only with a reason in `coarse`."""
-    coarse: str = ""
-    """Why a smaller error cannot be seen in reasonable time."""
+    seen: Callable[[np.ndarray], np.ndarray] = same
+    """What is made of images (batches, height, width, 3) before they are judged."""
+    sensors: int = 1
+    """All of the scene's, their images side by side."""
 
     flaw: str = ""
     """Why the renderer is known to be off here; the line is told as a known flaw as long as it is off by no more than:"""
     flawed_by: float = 0
 
-    def required(self, method: str) -> float:
-        """The relative error that must not go unseen by a method."""
-        return max(self.resolves, LIGHT_RESOLVES) if method.startswith("lt") else self.resolves
-
-    def expected(self) -> Estimate:
-        """The truth as an image."""
+    def expected(self) -> np.ndarray:
+        """The truth as images: independent batches, or one without error."""
         known = self.truth() if callable(self.truth) else self.truth
-        truth = known if isinstance(known, Estimate) else exact(known)
-        whole = lambda values: np.broadcast_to(values, (SIZE, SIZE, 3))
-        return Estimate(whole(truth.mean), whole(truth.variance), truth.freedom)
+        batches = known.batches if isinstance(known, Sampled) else np.asarray(known, dtype=float)[None]
+        batches = batches.reshape(len(batches), *(1,) * (4 - batches.ndim), *batches.shape[1:])
+        return np.broadcast_to(batches, (len(batches), SIZE, SIZE, 3))
 
 
 def named(source: Scene, name: str) -> Scene:
     """The scene under a name that can be a file's."""
     return Scene(source.source, "".join(c if c.isalnum() or c in "-+." else " " for c in name), {}, source.base)
-
-
-def methods(*names: str, effort: float = 1) -> dict[str, float]:
-    """These, all with the same effort."""
-    return dict.fromkeys(names, effort)
 
 
 def lamp(radiance: float) -> dict:

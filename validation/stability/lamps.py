@@ -118,7 +118,7 @@ def against() -> list[Case]:
         found.append(Case(AGAINST, f"floor before a lamp 1e-4 above it, {name}", source, polygon_image(view, upright), chosen, formula))
     s = HALF_LAMP
     over = np.array([[-s, GAP, -s], [s, GAP, -s], [s, GAP, s], [-s, GAP, s]])
-    found.append(Case(AGAINST, "floor seen from within a gap of 1e-4", gap(), polygon_image(WITHIN, over), {"pt": 1, "bdpt": 1, "lt": 8}, formula))
+    found.append(Case(AGAINST, "floor seen from within a gap of 1e-4", gap(), polygon_image(WITHIN, over), ALL, formula))
     return found
 
 
@@ -171,7 +171,7 @@ def of_strength(radiance: float) -> list[Case]:
     cube = {"type": "cube", "bsdf": NULL, "interior": {**fog(0.5, 0), "radiance": radiance}}
     return [
         Case(RADIANCE, f"white ball in an oven, {name}", oven(f"oven {name}", radiance, ball=ball(fog(1, 1))), radiance, ALL, "furnace"),
-        Case(RADIANCE, f"slab UR1 under a sky, {name}", named(flat, f"slab {name}"), radiance * SLAB.totals()[0], {"pt": 2, "bdpt": 2}, "adding-doubling"),
+        Case(RADIANCE, f"slab UR1 under a sky, {name}", named(flat, f"slab {name}"), radiance * SLAB.totals()[0], EYE, "adding-doubling"),
         Case(RADIANCE, f"floor lit by a point, {name}", lit_floor(f"point {name}", point, FLOOR_VIEW), radiance * lit_image("sphere"), ALL, "inverse square"),
         Case(RADIANCE, f"glowing cube, {name}", scene(f"glow {name}", sensor=parallel(0.9), cube=cube), radiance * -np.expm1(-1), ALL, "1 - exp(-b)"),
     ]

@@ -1,22 +1,20 @@
 """Truth for slabs whose phase function is too sharp for adding-doubling (at g = 0.999 it has not converged with 64
 quadrature points): photons in double precision, a few lines of numpy that share nothing with the renderer."""
 
-from functools import cache
-
 import numpy as np
 
-from tyndall.statistics import Estimate, estimate
+from validation.stability.case import Sampled
+from validation.stability.kept import kept
 
 PHOTONS = 100_000
 BATCHES = 16
 
 
-@cache
-def totals(albedo: float, b: float, g: float) -> tuple[Estimate, Estimate]:
+def totals(albedo: float, b: float, g: float) -> tuple[Sampled, Sampled]:
     """UR1 and UT1, the unscattered part included."""
-    generator = np.random.default_rng(7)
-    reflected, transmitted = np.array([batch(albedo, b, g, generator) for _ in range(BATCHES)]).T
-    return estimate(reflected), estimate(transmitted)
+    generator, told = np.random.default_rng(7), (albedo, b, g, PHOTONS, BATCHES)
+    reflected, transmitted = kept("photons", told, lambda: np.array([batch(albedo, b, g, generator) for _ in range(BATCHES)])).T
+    return Sampled(reflected), Sampled(transmitted)
 
 
 def batch(albedo: float, b: float, g: float, generator: np.random.Generator) -> tuple[float, float]:

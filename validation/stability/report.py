@@ -2,20 +2,28 @@
 
 import json
 import math
-from dataclasses import dataclass
+import os
+import platform
+import subprocess
+import time
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, replace
 from itertools import groupby
 from pathlib import Path
 
-from validation.files import write_text
-from validation.stability.case import Case
-from validation.stability.judge import Found, refused
+from tyndall import program
 from tyndall.statistics import SIGNIFICANCE
+from validation.files import write_text
+from validation.places import ROOT
+from validation.stability.case import AIM, LIGHT_AIM, Case
+from validation.stability.judge import REQUIRED, TILES, Found, refused
 
 CASE_WIDTH, METHOD_WIDTH = 52, 19
 HEADER = (
-    f"{'case':{CASE_WIDTH}} {'method':{METHOD_WIDTH}} {'expected':>12} {'found':>12} {'std error':>10} {'relative':>10} {'chance':>8}"
-    f" {'NaN/inf':>7} {'worst':>9} {'time':>8}"
+    f"{'case':{CASE_WIDTH}} {'method':{METHOD_WIDTH}} {'expected':>12} {'found':>12} {'std error':>10} {'relative':>10} {'resolves':>9} {'chance':>8}"
+    f" {'NaN/inf':>7} {'samples':>8} {'time':>8}"
 )
+HOLDS, FAILS, UNDECIDED = "holds", "fails", "not decided"
 
 
 @dataclass(frozen=True)
@@ -25,7 +33,68 @@ class Line:
     case: Case
     method: str
     found: Found | None
+    kin: int
+    """Lines of its kind in the whole table."""
     problem: str = ""
+
+    @property
+    def resolution(self) -> float:
+        """Of what was found."""
+        return self.found.resolution(self.kin) if self.found else math.inf
+
+    @property
+    def is_known(self) -> bool:
+        """True if it is off by no more than it is known to be."""
+        f = self.found
+        return f is not None and bool(self.case.flaw) and not f.not_finite and abs(f.difference) <= self.case.flawed_by
+
+    def verdict(self, is_refused: bool) -> str:
+        if is_refused or self.found is None:
+            return FAILS
+        return HOLDS if self.resolution <= REQUIRED else UNDECIDED
+
+
+@dataclass(frozen=True)
+class Made:
+    """How a table was made."""
+
+    command: str
+    version: str
+    commit: str
+    """Of the sources beside the table, with a remark if they have changed since."""
+    date: str
+    processor: str
+    load: float
+    """Processes that ran or waited during the minute before."""
+    start: float
+    seconds: float = 0
+    """Until it was done; lines that were taken over from before took none of them."""
+
+    @staticmethod
+    def now(command: str) -> "Made":
+        """Of what begins."""
+        version = program.call([str(program.binary()), "--version"]).stdout.strip()
+        return Made(command, version, commit(), time.strftime("%Y-%m-%d", time.gmtime()), processor(), os.getloadavg()[0], time.monotonic())
+
+    def ended(self) -> "Made":
+        return replace(self, seconds=time.monotonic() - self.start)
+
+    def __str__(self) -> str:
+        return f"{self.version}, commit {self.commit}, {self.date}; {self.processor}, load {self.load:.2f} at the start; {self.seconds:.0f} s"
+
+
+def commit() -> str:
+    """Of this clone."""
+    told = lambda *words: subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+    changed = " and changes" if told("status", "--porcelain", "--untracked-files=no") else ""
+    return (told("rev-parse", "--short", "HEAD") or "unknown") + changed
+
+
+def processor() -> str:
+    """Its name and how many there are."""
+    information = Path("/proc/cpuinfo")
+    named = (line.split(":")[1].strip() for line in information.read_text().splitlines() if line.startswith("model name")) if information.is_file() else ()
+    return f"{next(iter(named), platform.machine())}, {os.cpu_count()} of them"
 
 
 def short(line: Line) -> str:
@@ -35,75 +104,57 @@ def short(line: Line) -> str:
     if f is None:
         return f"{start} CANNOT: {line.problem}"
     return (
-        f"{start} {f.expected:12.6g} {f.found:12.6g} {f.error:10.2g} {100 * f.difference:+8.3f} % {f.probability:8.2g}"
-        f" {f.not_finite:7d} {f.worst:9.3g} {f.seconds:6.1f} s"
+        f"{start} {f.expected:12.6g} {f.found:12.6g} {f.error:10.2g} {100 * f.difference:+8.3f} % {100 * line.resolution:7.2f} % {f.probability:8.2g}"
+        f" {f.not_finite:7d} {f.samples:8d} {f.seconds:6.1f} s"
     )
-
-
-HOLDS = "holds"
-COARSELY = "holds, coarsely"
-"""So does a line that could have hidden more than it should."""
 
 
 @dataclass(frozen=True)
 class Table:
-    """All lines, judged together."""
+    """All lines; those of a kind are judged together."""
 
     lines: list[Line]
-    command: str
-    """That made it."""
+    made: Made
     perturbation: float
     quick: bool
 
-    def verdicts(self) -> list[str]:
-        """A word for each line."""
-        verdicts = refused([line.found.probability if line.found else 0 for line in self.lines])
-        return [self.verdict(line, wrong) for line, wrong in zip(self.lines, verdicts)]
+    def judged(self) -> list[tuple[Line, str]]:
+        """Each line with its verdict."""
+        return [pair for _, kind in groupby(self.lines, key=lambda line: line.case.row) for pair in judged(list(kind))]
 
-    def verdict(self, line: Line, wrong: bool) -> str:
-        if line.found is None:
-            return "CANNOT"
-        if wrong and line.case.flaw and abs(line.found.difference) <= line.case.flawed_by and not line.found.not_finite:
-            return "KNOWN FLAW"
-        if wrong:
-            return "REFUSED"
-        return COARSELY if self.coarse(line) else HOLDS
-
-    def coarse(self, line: Line) -> bool:
-        """True if an error could hide here that the case says would not."""
-        if line.found is None:
-            return False
-        resolution = line.found.resolution(len(self.lines))
-        return math.isfinite(resolution) and resolution > line.case.required(line.method)
+    def those(self, verdict: str) -> list[Line]:
+        """The lines that it is said of."""
+        return [line for line, said in self.judged() if said == verdict]
 
     def unseen(self) -> list[Line]:
-        """Of a perturbed table: the lines that should have refused and did not."""
-        seen = lambda line: line.found.resolution(len(self.lines)) <= abs(self.perturbation)
-        return [line for line, v in zip(self.lines, self.verdicts()) if v not in ("REFUSED", "KNOWN FLAW") and line.found and seen(line)]
+        """Of a perturbed table: the lines that should fail and do not."""
+        return [line for line, said in self.judged() if said != FAILS and 0 < line.resolution <= abs(self.perturbation)]
 
     def failing(self) -> list[Line]:
-        """The lines that do not hold."""
-        return [line for line, verdict in zip(self.lines, self.verdicts()) if verdict not in (HOLDS, COARSELY, "KNOWN FLAW")]
-
-    def flawed(self) -> int:
-        """How many lines are off as is known."""
-        return self.verdicts().count("KNOWN FLAW")
+        """The lines that fail, but for what is known."""
+        return [line for line in self.those(FAILS) if not line.is_known]
 
     def holds(self) -> bool:
+        """True if nothing fails; what is not decided is no fault, and is told."""
         return not (self.unseen() if self.perturbation else self.failing())
 
     def summary(self) -> str:
         """The last lines of what is printed."""
-        wrong = self.unseen() if self.perturbation else self.failing()
-        names = "".join(f"\n  {line.case.row}: {line.case.name}, {line.method}" for line in wrong)
         if self.perturbation:
-            claimed = sum(v == "REFUSED" for v in self.verdicts())
-            return f"off by {self.perturbation:g}: {claimed} of {len(self.lines)} lines refuse, {len(wrong)} should and do not{names}"
-        lost = sum(line.found.not_finite for line in self.lines if line.found)
-        flawed = self.flawed()
-        holding = f"{len(self.lines) - len(wrong) - flawed} of {len(self.lines)} lines hold"
-        coarsely = self.verdicts().count(COARSELY)
-        return f"{holding} ({coarsely} of them resolve less than asked), {flawed} are off as is known, {lost} values are NaN or infinite{names}"
+            wrong = self.unseen()
+            told = f"off by {self.perturbation:g}: {len(self.those(FAILS))} of {len(self.lines)} lines fail, {len(wrong)} should and do not"
+            return told + names(wrong)
+        failing, known = self.failing(), [line for line in self.those(FAILS) if line.is_known]
+        told = f"{len(self.those(HOLDS))} of {len(self.lines)} lines hold, {len(known) + len(failing)} fail"
+        told += f" ({len(known)} of them as is known)" if known else ""
+        told += f", {len(self.those(UNDECIDED))} are not decided; {sum(line.found.not_finite for line in self.lines if line.found)} values are NaN or infinite"
+        return told + names(failing) + names(self.those(UNDECIDED), ", not decided")
+
+    def cost(self) -> str:
+        """What it took."""
+        all_of_them = sum(line.found.seconds for line in self.lines if line.found)
+        sharp = sum(line.found is not None and line.resolution <= aim(line) for line in self.lines)
+        return f"{sharp} of {len(self.lines)} lines resolve their aim. All lines took {all_of_them:.0f} s of one processor, {all_of_them / 120:.0f} minutes of two."
 
     def write(self, folder: Path) -> None:
         """stability.md and stability.json."""
@@ -112,62 +163,78 @@ class Table:
 
     def markdown(self) -> str:
         """The whole table, row by row."""
-        told = [] if not self.quick else ["Made with fewer samples than usual (`--quick`): many lines resolve less than that."]
-        parts = [f"# Stability\n\n    {self.command}", INTRODUCTION, *told, self.summary().split("\n")[0] + "."]
-        judged = list(zip(self.lines, self.verdicts()))
-        for row, group in groupby(judged, key=lambda pair: pair[0].case.row):
+        told = [] if not self.quick else ["Made in less time than usual (`--quick`): many lines resolve less than that."]
+        parts = [f"# Stability\n\n    {self.made.command}", f"{self.made}.", INTRODUCTION, *told, self.summary().split("\n")[0] + ".", self.cost()]
+        for row, group in groupby(self.judged(), key=lambda pair: pair[0].case.row):
             pairs = list(group)
-            parts.append("\n".join([f"## {row}", "", COLUMNS, *(self.markdown_line(*pair) for pair in pairs)]))
-            remarks = {f"- {line.case.name}: {line.case.coarse}." for line, _ in pairs if line.case.coarse}
-            remarks |= {f"- {line.case.name}: {line.case.flaw}." for line, _ in pairs if line.case.flaw}
+            parts.append("\n".join([f"## {row}", "", COLUMNS, *(markdown_line(*pair) for pair in pairs)]))
+            remarks = {f"- {line.case.name}: {line.case.flaw}." for line, _ in pairs if line.case.flaw}
             remarks |= {f"- {line.case.name}, {line.method}: {line.problem}" for line, _ in pairs if line.problem}
             if remarks:
                 parts.append("\n".join(sorted(remarks)))
         return "\n\n".join(parts) + "\n"
 
-    def markdown_line(self, line: Line, verdict: str) -> str:
-        f = line.found
-        start = f"| {line.case.name} | {line.method} | {line.case.source} |"
-        if f is None:
-            return f"{start} | | | | | {verdict} | | |"
-        resolution = f.resolution(len(self.lines))
-        resolves = f"{100 * resolution:.2g} %" if math.isfinite(resolution) else "-"
-        difference = f"{100 * f.difference:+.3f} %" if f.expected else "-"
-        numbers = f"{f.expected:.6g} | {f.found:.6g} | {f.error:.1e} | {difference} | {resolves}"
-        return f"{start} {numbers} | {verdict} | {f.not_finite} | {f.worst:.3g} |"
-
     def dictionary(self) -> dict:
         """The table for programs."""
-        lines = [self.line_dictionary(*pair) for pair in zip(self.lines, self.verdicts())]
-        return {"significance": SIGNIFICANCE, "perturbation": self.perturbation, "holds": self.holds(), "lines": lines}
-
-    def line_dictionary(self, line: Line, verdict: str) -> dict:
-        case, f = line.case, line.found
-        start = {"row": case.row, "case": case.name, "method": line.method, "truth": case.source, "verdict": verdict}
-        if f is None:
-            return {**start, "problem": line.problem}
-        figures = {"found": f.found, "standard_error": f.error, "relative_difference": f.difference if f.expected else math.nan}
-        figures["resolution"] = f.resolution(len(self.lines))
-        told = {"expected": f.expected, "chance": f.probability, "not_finite": f.not_finite, "worst_sample": f.worst}
-        asked = {"required_resolution": case.required(line.method), "why_coarse": case.coarse or None, "known_flaw": case.flaw or None}
-        return {**start, **told, **asked, **{name: number(value) for name, value in figures.items()}}
+        lines = [line_dictionary(*pair) for pair in self.judged()]
+        about = {"significance": SIGNIFICANCE, "required_resolution": REQUIRED, "perturbation": self.perturbation, "holds": self.holds()}
+        return {**asdict(self.made), **about, "lines": lines}
 
 
-def number(value: float) -> float | None:
+def judged(kind: list[Line]) -> list[tuple[Line, str]]:
+    """The verdicts of the lines of one kind."""
+    verdicts = refused([line.found.probability if line.found else 0 for line in kind], kind[0].kin)
+    return [(line, line.verdict(wrong)) for line, wrong in zip(kind, verdicts)]
+
+
+def aim(line: Line) -> float:
+    """What it was rendered to resolve."""
+    return LIGHT_AIM if line.method.startswith("lt") else AIM
+
+
+def names(lines: Iterable[Line], remark: str = "") -> str:
+    """Of lines, each on a line of its own."""
+    return "".join(f"\n  {line.case.row}: {line.case.name}, {line.method}{remark}" for line in lines)
+
+
+def markdown_line(line: Line, verdict: str) -> str:
+    f = line.found
+    start = f"| {line.case.name} | {line.method} | {line.case.source} |"
+    if f is None:
+        return f"{start} | | | | | {verdict} | | | | |"
+    difference, resolves = (f"{100 * f.difference:+.3f} %", f"{100 * line.resolution:.2g} %") if f.expected else ("-", "-")
+    worst = "-" if f.worst is None else f"{f.worst:.3g}"
+    numbers = f"{f.expected:.6g} | {f.found:.6g} | {f.error:.1e} | {difference} | {resolves}"
+    return f"{start} {numbers} | {verdict} | {f.not_finite} | {worst} | {f.samples} | {f.seconds:.1f} |"
+
+
+def line_dictionary(line: Line, verdict: str) -> dict:
+    case, f = line.case, line.found
+    start = {"row": case.row, "case": case.name, "method": line.method, "truth": case.source, "verdict": verdict, "known_flaw": case.flaw or None}
+    if f is None:
+        return {**start, "problem": line.problem}
+    figures = {"relative_difference": f.difference if f.expected else math.nan, "resolution": line.resolution}
+    return {**start, **{name: number(value) for name, value in (asdict(f) | figures).items()}}
+
+
+def number(value: float | None) -> float | None:
     """JSON has no NaN and no infinity."""
-    return value if math.isfinite(value) else None
+    return value if value is not None and math.isfinite(value) else None
 
 
 COLUMNS = (
-    "| case | method | truth | expected | found | standard error | relative | resolves | verdict | NaN/inf | worst sample |\n"
-    "|---|---|---|---|---|---|---|---|---|---|---|"
+    "| case | method | truth | expected | found | standard error | relative | resolves | verdict | NaN/inf | worst sample | samples | seconds |\n"
+    "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
 )
-INTRODUCTION = f"""Every number that a scene gives, at its extremes, against truth. Each line is a case by one integrator (and tracker):
+INTRODUCTION = f"""Every number that a scene gives, at its extremes, against truth ([where it is from](../truths.md)). Each line is a case by one
+method: an integrator, `/` strategies, `+` what else is chosen, `:` tracker. `bdpt` is all of its strategies, `bdpt+pilot` those that
+its pilot chooses.
 
 - expected, found: the mean over the image, of the channel that differs most; its standard error is that of the difference.
-- resolves: the relative difference that would have been refused all but surely. It must be below 2 % (light
-  tracing: 6 %), or the reason is told; else the line is said to hold coarsely.
-- verdict: means of the image and of {4 * 4} tiles by Welch's test on independent images, all lines together by Holm's rule at
-  significance {SIGNIFICANCE:g}.
+- resolves: the relative difference that would have been refused all but surely. Lines are rendered until that is
+  {100 * AIM:g} % (light tracing: {100 * LIGHT_AIM:g} %) or their time is up, those above {100 * REQUIRED:g} %, and those that look wrong, for longer.
+- verdict: means of the image and of {TILES * TILES} tiles by Welch's test on independent images, all lines of a kind (a table below) by Holm's
+  rule at significance {SIGNIFICANCE:g}. A line that would not have refused {100 * REQUIRED:g} % is not decided.
 - NaN/inf: values of all images that are not finite; any is a failure.
-- worst sample: the greatest pixel value, over the expected mean, of an image of one sample per pixel."""
+- worst sample: the greatest pixel value, over the expected mean, of images of one sample per pixel.
+- samples: a pixel, in each of 16 images of 8 x 8 pixels. seconds: of one processor."""

@@ -1,12 +1,19 @@
-"""Renders every line of the table and judges all of them together."""
+"""Renders every line of the table and judges those of each kind together.
 
+A line is rendered in rounds, each a set of independent images that join the former ones, until it resolves its aim or its time
+is up. How many images there are is fixed; only their samples grow, and the errors say when to stop, not the means: but a line
+that looks wrong goes on, so that what chance did to few samples is not taken for a fault."""
+
+import hashlib
+import json
+import multiprocessing
 import os
 import sys
-import time
 import zlib
+from collections import Counter
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,55 +21,78 @@ import numpy as np
 import tyndall
 from tyndall.failure import Failure
 from tyndall.scene import Scene, changed
-from validation.closed_forms.case import SIZE
 from validation.compare import options_of
 from validation.stability import albedo, anisotropy, boundaries, contrast, grazing, index, lamps, published, report, scale, thickness, voids, walks
-from validation.stability.case import Case
-from validation.stability.judge import Found, judge
+from validation.stability.case import AIM, LIGHT_AIM, Case
+from validation.stability.kept import binary
+from validation.stability.judge import REQUIRED, Found, judge, level, worst
 from validation.stability.report import Line
-from tyndall.statistics import Estimate
 
 GROUPS = (thickness, albedo, anisotropy, contrast, scale, lamps, boundaries, grazing, walks, index, voids, published)
 """In the order of the table."""
-PATIENCE = 300
-"""Seconds after which one image counts as never finished."""
-SINGLE = 64
-"""Pixels a side of the images of one sample per pixel."""
+BATCHES = 16
+"""Independent images of each line."""
+PATIENCE = 900
+"""Seconds after which a round counts as never finished."""
+FEWEST = 16
+"""Samples a pixel in each image, however little noise there is."""
+GROWTH = 8
+"""A round has at most so many times the samples of those before: errors told by few samples are too small where light is rare."""
+MARGIN = 0.9
+"""Rounds are made to reach this part of what they must resolve: the noise itself is an estimate."""
+PLANNED = 2048
+"""Samples a pixel of the first round where a pilot or a guide is at work: with fewer there would be none."""
+
+
+BUDGET, CAP = 10.0, 50.0
+"""Seconds of processor time."""
 
 
 @dataclass(frozen=True)
 class Effort:
-    """How much is rendered: independent images of each line; at most so many samples a pixel in each, times the line's own
-    factor; the first seed."""
+    """Seconds of processor time that a line may take to resolve its aim, and to resolve what is required or be found wrong; the
+    first seed; by what part all that is found is made greater, to test the table."""
 
-    batches: int = 12
-    spp: int = 2048
+    budget: float = BUDGET
+    cap: float = CAP
     seed: int = 1
-
-FEWEST = 16
-"""Samples a pixel, however little noise there is."""
-AIM = 0.6
-"""Lines are rendered to this part of what they must resolve: the noise itself is an estimate."""
+    perturbation: float = 0
 
 
-def cases(only: str = "") -> list[Case]:
+@dataclass(frozen=True)
+class Job:
+    """A line to be rendered."""
+
+    case: Case
+    method: str
+    kin: int
+    """Lines of its kind."""
+
+
+def jobs(only: str = "") -> list[Job]:
     """The lines whose row or name contains `only`, or one of several such texts with | between them."""
     every = [case for group in GROUPS for case in group.cases()]
-    return [case for case in every if any(part in f"{case.row}: {case.name}" for part in only.split("|"))]
+    kin = Counter(case.row for case in every for _ in case.methods)
+    chosen = (case for case in every if any(part in f"{case.row}: {case.name}" for part in only.split("|")))
+    return [Job(case, method, kin[case.row]) for case in chosen for method in case.methods]
 
 
-def run(effort: Effort, output: Path, only: str = "", perturbation: float = 0, quick: bool = False) -> bool:
-    """Makes the table; true if all of it holds or, of a perturbed one, if every line refuses what it claims to see.
-    A `quick` table says that it is one."""
-    chosen = cases(only)
+def run(effort: Effort, output: Path, only: str = "", quick: bool = False, workers: int | None = None, anew: bool = False) -> bool:
+    """Makes the table; true if nothing in it fails or, of a perturbed one, if every line refuses what it claims to see. Lines
+    that this very program has rendered before are taken over, unless `anew`. A `quick` table says that it is one."""
+    chosen = jobs(only)
     if not chosen:
         raise Failure(f"no line of the stability table contains {only!r}", "name a part of a row or of a case, or leave --only out")
+    made = report.Made.now(command(sys.argv[1:]))
+    records = output / "lines.jsonl"
+    if anew:
+        records.unlink(missing_ok=True)
     lines = []
     print(report.HEADER, flush=True)
-    for line in found_lines(chosen, effort, 1 + perturbation):
+    for line in found_lines(chosen, effort, records, workers or os.cpu_count() or 1):
         lines.append(line)
         print(report.short(line), flush=True)
-    table = report.Table(lines, command(sys.argv[1:]), perturbation, quick)
+    table = report.Table(lines, made.ended(), effort.perturbation, quick)
     table.write(output)
     print(table.summary())
     return table.holds()
@@ -74,71 +104,103 @@ def command(arguments: list[str]) -> str:
     return " ".join(["python3 -m validation", *kept])
 
 
-def found_lines(chosen: list[Case], effort: Effort, factor: float) -> Iterator[Line]:
-    """Every case by every method, in order; all processors render."""
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        pairs = [(case, method) for case in chosen for method in case.methods]
-        yield from pool.map(lambda pair: line(pair[0], pair[1], effort, factor), pairs)
+def found_lines(chosen: list[Job], effort: Effort, records: Path, workers: int) -> Iterator[Line]:
+    """Every line, in order. What is found is kept as it comes, so that whoever is interrupted goes on from there."""
+    records.parent.mkdir(parents=True, exist_ok=True)
+    told = records.read_text().splitlines() if records.is_file() else []
+    kept = {record["key"]: record for record in map(json.loads, told)}
+    keys = [key(job, effort) for job in chosen]
+    # Processes, which tell the time of what they started; forked, as truths cannot be sent.
+    with multiprocessing.get_context("fork").Pool(workers, initializer=prepare, initargs=(chosen, effort)) as pool:
+        fresh = pool.imap(render, [i for i, one in enumerate(keys) if one not in kept])
+        for job, one in zip(chosen, keys):
+            record = kept.get(one) or {"key": one, **next(fresh)}
+            if one not in kept:
+                with records.open("a") as file:
+                    file.write(json.dumps(record) + "\n")
+            found = record["found"] and Found(**record["found"])
+            yield Line(job.case, job.method, found, job.kin, record["problem"])
 
 
-def line(case: Case, method: str, effort: Effort, factor: float) -> Line:
-    """One line."""
-    start = time.perf_counter()
-    # Lines have seeds of their own, whichever of them are rendered: what chance does to one it does not do to others.
-    first = effort.seed + 1000 * (zlib.crc32(f"{case.row} {case.name}".encode()) % 100_000)
+def key(job: Job, effort: Effort) -> str:
+    """Changes whenever what is found would."""
+    case = job.case
+    told = [case.row, case.name, job.method, case.scene.key(), case.seen.__name__, asdict(effort), binary()]
+    return hashlib.sha256(json.dumps(told).encode() + case.expected().tobytes()).hexdigest()[:20]
+
+
+def prepare(chosen: list[Job], effort: Effort) -> None:
+    """What a process works on."""
+    global work
+    work = chosen, effort
+
+
+work: tuple[list[Job], Effort]
+
+
+def render(number: int) -> dict:
+    """One line, for the records."""
+    chosen, effort = work
     try:
-        truth = case.expected()
-        single = raw(case.scene, method, 1, first, SINGLE if case.methods[method] >= 0.1 else None)[0]
-        spp = samples(case, method, single, truth, effort)
-        batches = raw(case.scene, method, spp, first + 1, batches=effort.batches)
+        return {"found": asdict(line(chosen[number], effort)), "problem": ""}
     except Failure as failure:
-        return Line(case, method, None, str(failure))
-    return Line(case, method, judge(batches, single, truth, time.perf_counter() - start, factor))
+        return {"found": None, "problem": str(failure)}
 
 
-def samples(case: Case, method: str, single: np.ndarray, truth: Estimate, effort: Effort) -> int:
-    """Samples a pixel for the line to resolve what it must, as far as one sample of each pixel tells."""
-    most = max(1, round(case.methods[method] * effort.spp))
-    mean = truth.mean.mean(axis=(0, 1))
-    if not np.isfinite(single).all() or not mean.any():
-        return min(most, FEWEST)
-    lit = mean > 0
-    noise = float((spread(single)[lit] / mean[lit] ** 2).max())
-    if noise == 0 and not np.allclose(single.mean(axis=(0, 1)), mean, rtol=1e-3):
-        return most  # one sample has seen nothing of it
-    limit = Found.limit(effort.batches - 1, TYPICAL_LINES)
-    wanted = noise * (limit / (AIM * case.required(method))) ** 2 / (SIZE**2 * effort.batches)
-    return int(np.clip(wanted, min(most, FEWEST), most))
+def line(job: Job, effort: Effort) -> Found:
+    """The rounds of one line."""
+    case, method = job.case, job.method
+    truth, images = case.expected(), partial(raw, case, method)
+    # Lines have seeds of their own, whichever of them are rendered: what chance does to one it does not do to others.
+    seed = effort.seed + 1000 * (zlib.crc32(f"{case.row} {case.name}".encode()) % 100_000)
+    total, done, spent, most = np.zeros(()), 0, 0.0, None
+    spp = PLANNED if "+" in method else 1
+    while spp:
+        start = seconds()
+        found = case.seen(images(spp, seed)) * (1 + effort.perturbation)
+        each = (seconds() - start) / spp
+        most = worst(found, truth) if done == 0 and spp == 1 else most
+        total, done, spent, seed = total + spp * found, done + spp, spent + each * spp, seed + BATCHES
+        outcome = replace(judge(total / done, truth), samples=done, seconds=spent, worst=most)
+        spp = more(outcome, LIGHT_AIM if method.startswith("lt") else AIM, job.kin, effort, each)
+    return outcome
 
 
-TYPICAL_LINES = 300
+def more(found: Found, aim: float, kin: int, effort: Effort, each: float) -> int:
+    """Samples a pixel of the next round, of `each` seconds; 0 where a line is settled or its time is up."""
+    resolution, looks_wrong = found.resolution(kin), found.probability < level(kin)
+    coarse = resolution > REQUIRED
+    affordable = int(((effort.cap if coarse or looks_wrong else effort.budget) - found.seconds) / each)
+    is_settled = resolution <= aim and found.samples >= FEWEST and not looks_wrong
+    if is_settled or found.not_finite or affordable < 1:
+        return 0
+    wanted = REQUIRED if coarse and found.seconds > effort.budget else aim
+    needed = np.inf if looks_wrong else found.samples * ((resolution / (MARGIN * wanted)) ** 2 - 1)
+    return max(1, int(min(max(needed, FEWEST - found.samples), affordable, GROWTH * found.samples)))
 
 
-def spread(single: np.ndarray) -> np.ndarray:
-    """The variance of a channel's pixels, as far as it is not the picture's own: within squares that are one pixel of the
-    truth."""
-    height, width, channels = single.shape
-    if height == SIZE:
-        return single.astype(float).var(axis=(0, 1))
-    squares = single.astype(float).reshape(SIZE, height // SIZE, SIZE, width // SIZE, channels)
-    return squares.var(axis=(1, 3)).mean(axis=(0, 1))
+def seconds() -> float:
+    """Processor time of this process and of those it has run."""
+    return sum(os.times()[:4])
 
 
-def raw(scene: Scene, method: str, spp: int, seed: int, size: int | None = None, batches: int | None = None) -> np.ndarray:
-    """Independent images, or one, as they are in the file: NaN and infinities included. A contribution that the program left
-    out because it was none counts as one."""
-    done = tyndall.run(
-        Scene(changed(scene.source, single_precision), scene.name, {}, scene.base),
-        **options_of(method),
-        spp=spp,
-        seed=seed,
-        size=(size, size) if size else None,
-        batches=batches,
-        threads=1,
-        patience=PATIENCE * (batches or 1),
-        must_be_finite=False,
-    )
-    images = done.image[None] if done.batches is None else done.batches
+def raw(case: Case, method: str, spp: int, seed: int) -> np.ndarray:
+    """Independent images as they are in the file: NaN and infinities included. A contribution that the program left out because
+    it was none counts as one."""
+    source = Scene(changed(case.scene.source, single_precision), case.scene.name, {}, case.scene.base)
+    common = {"spp": spp, "batches": BATCHES, "threads": 1, "patience": PATIENCE, "must_be_finite": False, **options_of(method)}
+    sensors = [{"sensor": str(i), "seed": seed + i * SEEDS} for i in range(case.sensors)] if case.sensors > 1 else [{"seed": seed}]
+    return np.concatenate([whole(tyndall.run(source, **common, **one)) for one in sensors], axis=2)
+
+
+SEEDS = 100_000_000
+"""Between those of two sensors."""
+
+
+def whole(done: tyndall.Rendering) -> np.ndarray:
+    """The images of a render."""
+    images = done.batches
+    assert images is not None
     if done.report["faults"]:
         images[0, 0, 0, 0] = np.nan
     return images

@@ -1,35 +1,41 @@
 """Scene scale 1e-6 to 1e6 with extinction scaled inversely, and a scene 1e5 units from the origin: the same image."""
 
-from functools import cache, partial
+from functools import partial
 
+import tyndall
 from tyndall.scene import Scene
-from validation import references
 from validation.closed_forms import point_light
 from validation.closed_forms.case import ISOTROPIC, NULL, camera, diffuse, scene
 from validation.closed_forms.slab import Slab, lit_slab
-from validation.compare import Effort
+from validation.compare import options_of
 from validation.stability.anisotropy import fog_image
-from validation.stability.case import ALL, EYE, Case, fog, lamp, moved, named, scaled
-from tyndall.statistics import Estimate
+from validation.stability.case import ALL, EYE, Case, Sampled, fog, lamp, moved, named, scaled
+from validation.stability.kept import binary, kept
 
 SCALE = "scene scale 1e-6 to 1e6"
 ORIGIN = "a scene 1e5 units from the origin"
 SCALES = tuple(10.0**k for k in range(-6, 7))
 FAR = (1e5, -1e5, 1e5)
-REFERENCE = Effort(batches=16, spp=1024, seed=77)
+BATCHES, SAMPLES, SEED = 16, 5_000, 900_000_001
+"""Of the room's truth: more than ten times the samples of a line."""
+BY = {"pt": "bdpt", "bdpt": "pt", "lt": "bdpt"}
+"""Whose image is whose truth."""
 SLAB = Slab(0.9, 2, 0.75)
 
 
 def cases() -> list[Case]:
     """All of them."""
-    found = []
-    for size in SCALES[::2]:
-        methods = ALL if size in (1e-6, 1.0, 1e6) else EYE
-        found.append(Case(SCALE, f"room with fog, x {size:g}", scaled(room(), size), reference, methods, "Mitsuba at scale 1"))
+    found = [case for size in SCALES[::2] for case in rooms(SCALE, scaled(room(), size), f", x {size:g}", size in (1e-6, 1.0, 1e6))]
     for size in (1e-6, 1e6):
         found += [Case(SCALE, f"{case.name}, x {size:g}", scaled(case.scene, size), case.truth, case.methods, case.source) for case in known()]
-    far = Case(ORIGIN, "room with fog", moved(room(), FAR), reference, ALL, "Mitsuba at the origin")
-    return [*found, far, *(Case(ORIGIN, case.name, moved(case.scene, FAR), case.truth, case.methods, case.source) for case in known())]
+    far = (Case(ORIGIN, case.name, moved(case.scene, FAR), case.truth, case.methods, case.source) for case in known())
+    return [*found, *rooms(ORIGIN, moved(room(), FAR), "", True), *far]
+
+
+def rooms(row: str, there: Scene, remark: str, by_light: bool) -> list[Case]:
+    """The room by each integrator, beside what another one shows of it as it is."""
+    methods = ALL if by_light else EYE
+    return [Case(row, f"room with fog{remark}", there, partial(reference, BY[method]), (method,), f"itself, by {BY[method]}") for method in methods]
 
 
 def room() -> Scene:
@@ -46,10 +52,10 @@ def room() -> Scene:
     )
 
 
-@cache
-def reference() -> Estimate:
-    """The room by Mitsuba."""
-    return references.cached(room())(REFERENCE).pixels
+def reference(method: str) -> Sampled:
+    """The room in its own size and place."""
+    make = lambda: tyndall.render_batches(room(), BATCHES, spp=SAMPLES, seed=SEED, **options_of(method))
+    return Sampled(kept(f"room-{method}", (room().key(), BATCHES, SAMPLES, SEED, binary()), make))
 
 
 def known() -> list[Case]:
