@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from tyndall.scene import Scene
-from validation.closed_forms.case import BLACK, NULL, camera, scene
+from validation.closed_forms.case import BLACK, NULL, camera, diffuse, scene
 from validation.closed_forms.slab import HALF_WIDTH, Slab, lit_slab
 from validation.stability.case import ALL, EYE, Case, fog, lamp, moved, oven, parallel
 from validation.stability.thickness import AWAY
@@ -63,7 +63,7 @@ def touching() -> list[Case]:
     for total, truth, blocker in zip(("UR1", "UT1"), SLAB.totals(), (-1.5, 1.5)):
         source = moved(halves(total, blocker), AWAY)
         found.append(Case(TOUCHING, f"slab cut in two, {total}", source, truth, EYE, "adding-doubling"))
-    return [*found, absorbers(), pair()]
+    return [*found, absorbers(), pair(), on_lamp(), on_white(), in_glass(), cells()]
 
 
 CUT = 0.3
@@ -109,3 +109,41 @@ def pair() -> Case:
         for name, x, s, g in (("left", -0.6, 1, 0.0), ("right", 0.6, 5, 0.5))
     }
     return Case(TOUCHING, "two white cubes in an oven", oven("pair", **parts), 1, ALL, "furnace")
+
+
+def standing(half: tuple[float, float, float], at: tuple[float, float, float], **more: Any) -> dict:
+    """A cube that is so wide, and stands on y = at[1]."""
+    x, y, z = at
+    return {"type": "cube", "to_world": [{"type": "scale", "value": list(half)}, {"type": "translate", "value": [x, y + half[1], z]}], **more}
+
+
+def on_lamp() -> Case:
+    """An absorber that lies on a lamp."""
+    disk = {"type": "disk", "bsdf": BLACK, "emitter": lamp(1)}
+    upon = {"type": "cube", "to_world": [{"type": "scale", "value": [1, 1, 0.35]}, {"type": "translate", "value": [0, 0, 0.35]}], "bsdf": NULL, "interior": fog(2, 0)}
+    source = scene("absorber on a lamp", sensor=parallel(0.4), lamp=disk, absorber=upon)
+    return Case(TOUCHING, "absorber that lies on a lamp", source, float(np.exp(-2 * 0.7)), ALL, "exp(-tau)")
+
+
+def on_white() -> Case:
+    """A slab of white fog on a white floor: what absorbs nothing, in an oven."""
+    floor = standing((1.1, 0.1, 1.1), (0, -0.67, 0), bsdf=diffuse(1))
+    source = oven("fog on a floor", floor=floor, fog=standing((0.7, 0.4, 0.7), (0.1, -0.67 + 0.2, 0), bsdf=NULL, interior=fog(2, 1, 0.3)))
+    return Case(TOUCHING, "white fog that stands on a white floor, in an oven", source, 1, ALL, "furnace")
+
+
+def in_glass() -> Case:
+    """White fog that fills a ball of glass of its own size."""
+    shell = {"type": "sphere", "bsdf": {"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0}}
+    source = oven("fog in glass of its size", glass=shell, fog={"type": "sphere", "bsdf": NULL, "interior": fog(1, 1)})
+    return Case(TOUCHING, "white fog in glass of its size, in an oven", source, 1, EYE, "furnace")
+
+
+def cells() -> Case:
+    """Eight cubes that share faces, edges and corners: white fogs, and one that is matt."""
+    parts: dict[str, Any] = {}
+    for i in range(8):
+        x, y, z = (0.5 * ((i >> k) & 1) - 0.25 for k in range(3))
+        inside = {"bsdf": diffuse(1)} if i == 5 else {"bsdf": NULL, "interior": fog(0.3 * 3 ** (i % 4), 1, 0.2 * (i % 3))}
+        parts[f"cell{i}"] = standing((0.25, 0.25, 0.25), (x + CUT, y - 0.25, z), **inside)
+    return Case(TOUCHING, "eight white cells in an oven", oven("cells", **parts), 1, ALL, "furnace")

@@ -8,6 +8,7 @@ import hashlib
 import json
 import multiprocessing
 import os
+import resource
 import sys
 import zlib
 from collections import Counter
@@ -22,13 +23,13 @@ import tyndall
 from tyndall.failure import Failure
 from tyndall.scene import Scene, changed
 from validation.compare import options_of
-from validation.stability import albedo, anisotropy, boundaries, contrast, grazing, index, lamps, published, report, scale, thickness, voids, walks
+from validation.stability import albedo, anisotropy, balls, boundaries, choices, contrast, fluence, grazing, index, lamps, overlaps, published, report, scale, thickness, trackers, voids, walks
 from validation.stability.case import AIM, LIGHT_AIM, Case
 from validation.stability.kept import binary
 from validation.stability.judge import REQUIRED, Found, judge, level, worst
 from validation.stability.report import Line
 
-GROUPS = (thickness, albedo, anisotropy, contrast, scale, lamps, boundaries, grazing, walks, index, voids, published)
+GROUPS = (thickness, albedo, anisotropy, contrast, trackers, scale, lamps, boundaries, overlaps, choices, grazing, walks, index, voids, published, balls, fluence)
 """In the order of the table."""
 BATCHES = 16
 """Independent images of each line."""
@@ -40,6 +41,8 @@ GROWTH = 8
 """A round has at most so many times the samples of those before: errors told by few samples are too small where light is rare."""
 MARGIN = 0.9
 """Rounds are made to reach this part of what they must resolve: the noise itself is an estimate."""
+TICK = 0.004
+"""Seconds of the shortest time that is told."""
 PLANNED = 2048
 """Samples a pixel of the first round where a pilot or a guide is at work: with fewer there would be none."""
 
@@ -158,7 +161,7 @@ def line(job: Job, effort: Effort) -> Found:
     while spp:
         start = seconds()
         found = case.seen(images(spp, seed)) * (1 + effort.perturbation)
-        each = (seconds() - start) / spp
+        each = max(seconds() - start, TICK) / spp
         most = worst(found, truth) if done == 0 and spp == 1 else most
         total, done, spent, seed = total + spp * found, done + spp, spent + each * spp, seed + BATCHES
         outcome = replace(judge(total / done, truth), samples=done, seconds=spent, worst=most)
@@ -181,7 +184,8 @@ def more(found: Found, aim: float, kin: int, effort: Effort, each: float) -> int
 
 def seconds() -> float:
     """Processor time of this process and of those it has run."""
-    return sum(os.times()[:4])
+    used = map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(one.ru_utime + one.ru_stime for one in used)
 
 
 def raw(case: Case, method: str, spp: int, seed: int) -> np.ndarray:

@@ -67,13 +67,14 @@ LAMP_DEPTHS = (1e-6, 1e-3, 1.0, 10.0, 80.0)
 
 
 def lamps_behind() -> list[Case]:
-    """A lamp seen through what only absorbs. Eye walks hardly come through; light joined with the lens does."""
+    """A lamp seen through what only absorbs. Eye walks hardly come through, and `bdpt` leaves what is seen directly to them; light
+    joined with the lens does."""
     found = []
     for b in LAMP_DEPTHS:
         cube = {"type": "cube", "bsdf": NULL, "interior": fog(b / 2, 0)}
         disk = {"type": "disk", "to_world": [{"type": "translate", "value": [0, 0, -1.5]}], "bsdf": BLACK, "emitter": lamp(1)}
         source = scene(f"behind b {b:g}", sensor={**camera((0, 0, 3), (0, 0, 0), 8)}, cube=cube, lamp=disk)
-        chosen = ALL if b <= 1 else ("bdpt", "lt")
+        chosen = ALL if b <= 1 else ("bdpt/next-event,join,lens", "lt")
         found.append(Case(ROW, f"lamp behind an absorber, b {b:g}", source, behind(b), chosen, "exp(-b / cos)"))
     return found
 
