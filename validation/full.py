@@ -12,7 +12,7 @@ from validation.compare import Effort
 from validation.places import CROSSCHECK, OUTPUT, REQUIREMENTS_CLUSTER
 from validation.stability import run as stability
 
-TEXT = "Scenes against Mitsuba as it renders now, closed forms, stability and a page in a browser, at full depth: under 40 minutes of two cores."
+TEXT = "Scenes against Mitsuba as it renders now, closed forms, stability and a page in a browser, at full depth: about an hour of two cores."
 
 
 def run() -> bool:

@@ -1,4 +1,4 @@
-"""g = 0, +-1e-4, +-0.999 (Henyey-Greenstein)."""
+"""g = 0, +-1e-4, +-0.999, +-0.99999 (Henyey-Greenstein)."""
 
 from functools import cache, partial
 
@@ -11,8 +11,8 @@ from validation.stability import photons
 from validation.stability.case import ALL, EYE, Case, Sampled, ball, moved, named, oven
 from validation.stability.thickness import AWAY
 
-ROW = "g = 0, +-1e-4, +-0.999"
-VALUES = (0.0, 1e-4, -1e-4, 0.999, -0.999)
+ROW = "g = 0, +-1e-4, +-0.999, +-0.99999"
+VALUES, SHARPEST = (0.0, 1e-4, -1e-4, 0.999, -0.999), (0.99999, -0.99999)
 SLABS = {0.999: (1.0, 100.0)}
 """Albedo and optical thickness, where hardly any light would come back from those of the others:"""
 USUAL = (0.9, 2.0)
@@ -20,7 +20,7 @@ USUAL = (0.9, 2.0)
 
 def cases() -> list[Case]:
     """All of them."""
-    return [case for g in VALUES for case in (*slabs(g), in_oven(g), single(g))]
+    return [case for g in VALUES for case in (*slabs(g), in_oven(g), single(g))] + [case for g in SHARPEST for case in (in_oven(g), single(g))]
 
 
 def slabs(g: float) -> list[Case]:

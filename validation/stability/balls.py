@@ -5,18 +5,18 @@ chord, however it scatters. The same balls in a white furnace show what is left 
 import math
 
 from tyndall.scene import Scene
-from validation.closed_forms.case import scene
-from validation.stability.case import ALL, EYE, Case, ball, fog, mean, oven, parallel
+from validation.closed_forms.case import orthographic, scene
+from validation.stability.case import ALL, Case, ball, fog, mean, oven, parallel
 
 ROW = "balls by the integral equation of the sphere"
 SHOWN = ((1.0, 0.0, 0.703003), (1.0, 0.5, 0.915486), (1.0, 0.9, 1.21994), (5.0, 0.9, 0.753031), (10.0, 0.9, 0.453714), (10.0, 0.999, 1.298339))
 """Optical radius, albedo, and the mean of the disc."""
-WHITE = ((1e-3, 0.0), (1.0, 0.9), (1.0, -0.9), (30.0, 0.0), (1e3, 0.0), (1e3, 0.9))
+WHITE = ((1e-3, 0.0), (1.0, 0.9), (1.0, -0.9), (30.0, 0.0), (300.0, 0.0), (1e3, 0.9))
 """Optical radius and mean cosine, of those that absorb nothing."""
 DISC = math.pi / 4
 """Of the square that it touches."""
 DEEP = 100
-"""From this optical radius on, light that starts inside takes too many steps to get out."""
+"""From this optical radius on, light that starts inside takes too many steps to get out, in the square of the radius."""
 
 
 def cases() -> list[Case]:
@@ -30,12 +30,13 @@ def shining(tau: float, albedo: float, g: float, shown: float) -> Case:
     """Before black."""
     there = scene(f"ball {tau:g} {albedo:g} {g:g}", sensor=parallel(1), ball=ball({**fog(tau, albedo, g), "emission": 1.0}))
     told = f", g {g:g}" if g else ""
-    return case(f"ball that shines, tau {tau:g}, albedo {albedo:g}{told}", there, DISC * shown, EYE if tau >= DEEP else ALL)
+    return case(f"ball that shines, tau {tau:g}, albedo {albedo:g}{told}", there, DISC * shown, ("pt",) if tau >= DEEP else ALL)
 
 
 def heated(tau: float, albedo: float, shown: float) -> Case:
     """In an oven of radiance 1, which is seen around it."""
-    there = scene(f"heated ball {tau:g} {albedo:g}", sensor=parallel(1), **{k: v for k, v in oven("", ball=ball(fog(tau, albedo))).tree().items() if k in ("wall", "ball")})
+    name = f"heated ball {tau:g} {albedo:g}"
+    there = Scene({**oven(name, ball=ball(fog(tau, albedo))).tree(), "sensor": orthographic((0, 0, 2.5), (0, 0, 0), 1)}, name)
     return case(f"ball in a white furnace, tau {tau:g}, albedo {albedo:g}", there, DISC * shown + 1 - DISC, ALL)
 
 

@@ -1,4 +1,4 @@
-"""Extinction contrast: 1e-3 : 1 : 1e3 between channels, 1e6 between neighbouring voxels."""
+"""Extinction contrast: 1e-3 : 1 : 1e3 between channels, 1e6 and 1e12 between neighbouring voxels."""
 
 import numpy as np
 
@@ -10,7 +10,8 @@ from validation.stability.case import ALL, EYE, TRACKERS, Case, ball, fog, lamp,
 from validation.stability.thickness import AWAY
 
 CHANNELS = "extinction 1e-3 : 1 : 1e3 between channels"
-VOXELS = "extinction 1e6 between neighbouring voxels"
+VOXELS = "extinction 1e6 and 1e12 between neighbouring voxels"
+EXTREME = 1e12
 RATIOS = np.array([1e-3, 1.0, 1e3])
 GRID = ("pt", "pt:exact", "pt:null_collision", "pt:residual_ratio", "bdpt")
 
@@ -67,9 +68,12 @@ def voxels() -> list[Case]:
     furnace = varying.furnace(10, varying.CONTRAST)
     random = varying.uneven((SIZE, SIZE, SIZE), varying.CONTRAST)
     rods, seen = varying.block("uneven", random), varying.image_of(random)
+    extreme = varying.uneven((SIZE, SIZE, SIZE), EXTREME)
     found = [
         Case(VOXELS, "white ball under the sky", furnace, 1, (*GRID, "pt:march"), "furnace"),
         Case(VOXELS, "absorbing rows", rods, seen, (*GRID, "pt:march"), "exp(-tau)"),
+        Case(VOXELS, "white ball under the sky, 1e12", varying.furnace(10, EXTREME), 1, GRID, "furnace"),
+        Case(VOXELS, "absorbing rows, 1e12", varying.block("extreme", extreme), varying.image_of(extreme), GRID, "exp(-tau)"),
     ]
     layers = varying.grid(varying.uneven((1, 16, 1), varying.CONTRAST), varying.STRETCH, filter_type="nearest")
     for total, truth, blocker in zip(("UR1", "UT1"), varying.SLAB.totals(), (-1.5, 1.5)):

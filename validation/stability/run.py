@@ -47,14 +47,16 @@ PLANNED = 2048
 """Samples a pixel of the first round where a pilot or a guide is at work: with fewer there would be none."""
 
 
-BUDGET, CAP = 10.0, 50.0
-"""Seconds of processor time."""
+BUDGET, CAP = 20.0, 300.0
+"""Seconds of processor time; few lines need the second."""
+DOUBT = 3
+"""A line that looks wrong gets so many times its budget."""
 
 
 @dataclass(frozen=True)
 class Effort:
-    """Seconds of processor time that a line may take to resolve its aim, and to resolve what is required or be found wrong; the
-    first seed; by what part all that is found is made greater, to test the table."""
+    """Seconds of processor time that a line may take to resolve its aim, and to resolve what is required; the first seed; by what
+    part all that is found is made greater, to test the table."""
 
     budget: float = BUDGET
     cap: float = CAP
@@ -173,7 +175,8 @@ def more(found: Found, aim: float, kin: int, effort: Effort, each: float) -> int
     """Samples a pixel of the next round, of `each` seconds; 0 where a line is settled or its time is up."""
     resolution, looks_wrong = found.resolution(kin), found.probability < level(kin)
     coarse = resolution > REQUIRED
-    affordable = int(((effort.cap if coarse or looks_wrong else effort.budget) - found.seconds) / each)
+    until = effort.cap if coarse else effort.budget * (DOUBT if looks_wrong else 1)
+    affordable = int((until - found.seconds) / each)
     is_settled = resolution <= aim and found.samples >= FEWEST and not looks_wrong
     if is_settled or found.not_finite or affordable < 1:
         return 0

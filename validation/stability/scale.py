@@ -1,4 +1,4 @@
-"""Scene scale 1e-6 to 1e6 with extinction scaled inversely, and a scene 1e5 units from the origin: the same image."""
+"""Scene scale 1e-10 to 1e10 with extinction scaled inversely, and a scene far from the origin: the same image."""
 
 from functools import partial
 
@@ -12,10 +12,10 @@ from validation.stability.anisotropy import fog_image
 from validation.stability.case import ALL, EYE, Case, Sampled, fog, lamp, moved, named, scaled
 from validation.stability.kept import binary, kept
 
-SCALE = "scene scale 1e-6 to 1e6"
-ORIGIN = "a scene 1e5 units from the origin"
+SCALE = "scene scale 1e-10 to 1e10"
+ORIGIN = "a scene 1e5 to 1e10 units from the origin"
 SCALES = tuple(10.0**k for k in range(-6, 7))
-FAR = (1e5, -1e5, 1e5)
+FAR, FARTHEST = (1e5, -1e5, 1e5), (1e10, -1e10, 1e10)
 BATCHES, SAMPLES, SEED = 16, 5_000, 900_000_001
 """Of the room's truth: more than ten times the samples of a line."""
 BY = {"pt": "bdpt", "bdpt": "pt", "lt": "bdpt"}
@@ -26,10 +26,12 @@ SLAB = Slab(0.9, 2, 0.75)
 def cases() -> list[Case]:
     """All of them."""
     found = [case for size in SCALES[::2] for case in rooms(SCALE, scaled(room(), size), f", x {size:g}", size in (1e-6, 1.0, 1e6))]
-    for size in (1e-6, 1e6):
+    for size in (1e-10, 1e-6, 1e6, 1e10):
         found += [Case(SCALE, f"{case.name}, x {size:g}", scaled(case.scene, size), case.truth, case.methods, case.source) for case in known()]
-    far = (Case(ORIGIN, case.name, moved(case.scene, FAR), case.truth, case.methods, case.source) for case in known())
-    return [*found, *rooms(ORIGIN, moved(room(), FAR), "", True), *far]
+    found += rooms(ORIGIN, moved(room(), FAR), ", 1e5", True)
+    for by in (FAR, FARTHEST):
+        found += [Case(ORIGIN, f"{case.name}, {by[0]:g}", moved(case.scene, by), case.truth, case.methods, case.source) for case in known()]
+    return found
 
 
 def rooms(row: str, there: Scene, remark: str, by_light: bool) -> list[Case]:
