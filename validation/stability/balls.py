@@ -11,7 +11,7 @@ from validation.stability.case import ALL, Case, ball, fog, mean, oven, parallel
 ROW = "balls by the integral equation of the sphere"
 SHOWN = ((1.0, 0.0, 0.703003), (1.0, 0.5, 0.915486), (1.0, 0.9, 1.21994), (5.0, 0.9, 0.753031), (10.0, 0.9, 0.453714), (10.0, 0.999, 1.298339))
 """Optical radius, albedo, and the mean of the disc."""
-WHITE = ((1e-3, 0.0), (1.0, 0.9), (1.0, -0.9), (30.0, 0.0), (300.0, 0.0), (1e3, 0.9))
+WHITE = ((1e-3, 0.0), (1.0, 0.9), (1.0, -0.9), (30.0, 0.0), (300.0, 0.0), (500.0, 0.9))
 """Optical radius and mean cosine, of those that absorb nothing."""
 DISC = math.pi / 4
 """Of the square that it touches."""
