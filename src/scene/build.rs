@@ -41,6 +41,7 @@ use crate::{
 };
 use asked::Asked;
 use finish::Finished;
+pub(super) use groups::Base;
 use groups::Bases;
 use std::collections::HashMap;
 
@@ -89,6 +90,16 @@ pub(super) struct Moving {
     kept: Kept,
 }
 
+impl Moving {
+    /// Builds the scene as it is so many seconds `after` its time.
+    fn assemble(&self, overrides: Overrides, before: Option<&Before<'_>>, after: f64) -> Result<Setup> {
+        assemble(self, overrides, before, after).map_err(|error| match after == 0.0 {
+            true => error,
+            false => Error { place: format!("{after} s after the scene's time: {}", error.place), ..error },
+        })
+    }
+}
+
 impl Setup {
     /// From when to when, after the scene's time, the shutter is open (s); none if nothing moves meanwhile.
     pub fn exposure(&self) -> Option<[f64; 2]> {
@@ -98,14 +109,13 @@ impl Setup {
     /// The scene as `pass` of renders with `seed` sees it; none if it stands still. The origin stays where it is: what stands still
     /// need not be built again, and what was learnt lies where it did.
     pub fn moment(&self, seed: u64, pass: u64) -> Option<Result<Self>> {
-        let moving = self.moving.as_ref()?;
-        let after = moving.shutter.moment(seed, pass);
-        let before = Before::new(self).map(Before::in_place);
-        let built = before.and_then(|before| assemble(moving, self.overrides, Some(&before), after));
-        Some(built.map_err(|error| Error {
-            place: format!("{after} s after the scene's time: {}", error.place),
-            ..error
-        }))
+        self.after(self.moving.as_ref()?.shutter.moment(seed, pass)).transpose()
+    }
+
+    /// The same at so many seconds `after` the scene's time.
+    fn after(&self, after: f64) -> Result<Option<Self>> {
+        let Some(moving) = &self.moving else { return Ok(None) };
+        moving.assemble(self.overrides, Some(&Before::new(self)?.in_place()), after).map(Some)
     }
 
     /// What a medium is called; where several overlap, all of them.
@@ -131,10 +141,17 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
 pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) -> Result<Setup> {
     plugins::check(root)?;
     let moving = Moving { root: root.clone(), shutter: Shutter::of(root)?, kept: Kept::default() };
-    let before = before.map(Before::new).transpose()?;
-    let built = assemble(&moving, overrides, before.as_ref(), moving.shutter.middle())?;
-    let moves = keyframes::has_any(root) || shutter::drifts(&built.root);
-    Ok(Setup { moving: (moves && !moving.shutter.is_instant()).then_some(moving), ..built })
+    let (shutter, before) = (moving.shutter, before.map(Before::new).transpose()?);
+    let built = moving.assemble(overrides, before.as_ref(), shutter.middle())?;
+    if shutter.is_instant() || !(keyframes::has_any(root) || shutter::has_drifting(&built.root)) {
+        return Ok(built);
+    }
+    let scene = Scene { moves: true, ..built.scene };
+    let setup = Setup { scene, moving: Some(moving), ..built };
+    // Before hours of rendering, not after.
+    setup.after(shutter.opens)?;
+    setup.after(shutter.closes)?;
+    Ok(setup)
 }
 
 /// Builds the scene as it is so many seconds `after` its time.

@@ -1,7 +1,12 @@
 //! A scene built again for another moment: what says the same as before is taken from what was built then. Building is
 //! deterministic, so that this changes no bit of the scene.
 
-use super::{accel::Geometry, build::Setup, contact::Apart};
+use super::{
+    accel::Geometry,
+    build::{Base, Setup},
+    contact::Apart,
+    shutter::drifts,
+};
 use crate::{
     bsdf::Bsdf,
     description::{Library, Location, Object, Value},
@@ -10,7 +15,6 @@ use crate::{
     math::DVec3,
     medium::MediumDescription,
     shape::Shape,
-    volume::WIND,
 };
 use std::{cell::RefCell, collections::HashMap};
 
@@ -28,6 +32,8 @@ pub(super) struct Parts {
     pub emitters: Numbers,
     /// Media as they were read.
     pub media: HashMap<Location, MediumDescription>,
+    /// What instances share, by the shape in the group.
+    pub bases: HashMap<Location, Base>,
 }
 
 /// What was built before.
@@ -97,6 +103,12 @@ impl<'a> Before<'a> {
         is_same.then(|| given.or_else(|| self.setup.scene.geometry.shapes().get(index)))?
     }
 
+    /// What instances of the shape that `object` describes share.
+    pub(super) fn base(&self, object: &Object) -> Option<&'a Base> {
+        let before = self.objects.get(&key(object))?;
+        own(before).eq(own(object)).then(|| self.setup.parts.bases.get(&object.location))?
+    }
+
     /// The BSDF that it describes.
     pub(super) fn bsdf(&self, object: &Object, library: &Library) -> Option<&'a Bsdf> {
         let index = *self.setup.parts.bsdfs.get(&object.location)?;
@@ -135,7 +147,7 @@ impl<'a> Before<'a> {
         };
         let (a, b) = (&before.properties, &now.properties);
         let are_same = || a.iter().zip(b).all(|(a, b)| a.name == b.name && is_same(&a.value, &b.value));
-        before.plugin == now.plugin && now.plugin != WIND && a.len() == b.len() && are_same()
+        before.plugin == now.plugin && !drifts(now) && a.len() == b.len() && are_same()
     }
 
     fn refers_to_same(&self, id: &str, library: &Library) -> bool {

@@ -7,8 +7,8 @@
 
 use super::{batch, sensors};
 use crate::{
-    description::{Object, Params, Value},
-    error::Result,
+    description::{Object, Params, Property, Value},
+    error::{Error, Result},
     math::DVec3,
     sampling::{Stream, stream::Purpose},
     sensor::SHUTTER,
@@ -31,8 +31,15 @@ impl Shutter {
     /// That of the camera of `root`, which is the first sensor.
     pub fn of(root: &Object) -> Result<Self> {
         let root = batch::expand(root)?;
-        let camera = sensors::sensors(&root).next();
-        let [opens, closes] = SHUTTER.map(|name| camera.and_then(|camera| camera.number(name)));
+        let Some(camera) = sensors::sensors(&root).next() else { return Ok(Self::default()) };
+        let is_keyed = |property: &&Property| {
+            SHUTTER.contains(&property.name.as_str()) && matches!(property.value, Value::Keyframes(_))
+        };
+        if let Some(Property { name, location, .. }) = camera.properties.iter().find(is_keyed) {
+            let remedy = "give a number of seconds after the scene's time";
+            return Err(Error::new(location, format!("one number for \"{name}\""), "keyframes", remedy));
+        }
+        let [opens, closes] = SHUTTER.map(|name| camera.number(name));
         let opens = opens.unwrap_or(0.0);
         Ok(Self { opens, closes: closes.unwrap_or(0.0).max(opens) })
     }
@@ -70,13 +77,18 @@ pub(super) fn check(camera: &Params<'_>) -> Result<()> {
     Ok(())
 }
 
-/// True if something in `object`, which has no smoke in it, drifts in a wind or by its own velocity.
+/// True of what drifts although it says the same at all times: in a wind, or by its own velocity.
 pub(super) fn drifts(object: &Object) -> bool {
-    object.properties.iter().any(|property| match &property.value {
-        Value::Object(child) => child.plugin == WIND || drifts(child),
-        Value::String(grid) => property.name == VELOCITY && !grid.is_empty(),
+    object.plugin == WIND || object.properties.iter().any(|property| property.name == VELOCITY)
+}
+
+/// True if something in `object`, which has no smoke in it, drifts.
+pub(super) fn has_drifting(object: &Object) -> bool {
+    let below = |property: &Property| match &property.value {
+        Value::Object(child) => has_drifting(child),
         _ => false,
-    })
+    };
+    drifts(object) || object.properties.iter().any(below)
 }
 
 #[cfg(test)]

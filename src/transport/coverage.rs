@@ -91,7 +91,7 @@ impl Traits {
             smooth: in_words_smooth(
                 bsdfs().filter(|bsdf| bsdf.has_dirac() && bsdf.survival(Vec2::ZERO.into(), Vec3::Z) > 0.0),
             ),
-            rough: scatters || bsdfs().any(BsdfModel::is_connectible),
+            rough: scatters || scene.moves || bsdfs().any(BsdfModel::is_connectible),
             max_depth: options.max_depth.unwrap_or(u32::MAX),
             min_depth: options.min_depth,
         }

@@ -191,3 +191,24 @@ fn samples_of_a_pixel_are_those_of_the_image() {
     let found = f64::from(sandbox.channels("a.exr")["R"][4 * 8 + 3]);
     assert!(found > 0.0 && (mean / found - 1.0).abs() < 1e-5, "{mean} {found}");
 }
+
+/// What is not there halfway through the exposure is not left out by the pilot.
+#[test]
+fn fog_that_appears_late_is_lit() {
+    let fog = |sigma_t: Value| {
+        scene(&[
+            ("sensor", with(camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 32), &[("shutter_close", json!(1.0))])),
+            ("fog", null_box([-1.0; 3], [1.0; 3], Some(medium(sigma_t, 0.9, 0.0)))),
+            ("sky", sky(0.2)),
+            ("lamp", point([2.0, 2.0, 2.0], 5.0)),
+        ])
+    };
+    let appears = fog(keyed(&[(0.0, json!(0.0)), (0.6, json!(0.0)), (1.0, json!(3.0))]));
+    let sandbox = Sandbox::with_scene(&appears);
+    let red = |name: &str| sandbox.channels(name)["R"].iter().map(|x| f64::from(*x)).sum::<f64>();
+    let run = |words: &str| sandbox.run(&format!("render scene.json --spp 64 {words}")).ends(0);
+    run("-o pilot.exr");
+    run("--seed 1 -o named.exr --strategies hit,next-event");
+    let ratio = red("pilot.exr") / red("named.exr");
+    assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
+}

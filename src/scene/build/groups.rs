@@ -30,8 +30,8 @@ pub(super) struct Bases {
 }
 
 /// A shape around its middle, which is `middle` in the group.
-#[derive(Clone)]
-struct Base {
+#[derive(Clone, Debug)]
+pub(in crate::scene) struct Base {
     geometry: Arc<Geometry>,
     middle: DVec3,
     is_mesh: bool,
@@ -177,9 +177,12 @@ impl<'a> Builder<'a> {
         if let Some(known) = self.bases.built.get(&key) {
             return Ok((known.clone(), false));
         }
-        let base = Base::build(params, build)?;
+        let old = self.before.and_then(|before| before.base(params.object)).cloned();
+        let is_new = old.is_none();
+        let base = old.map_or_else(|| Base::build(params, build), Ok)?;
         self.bases.built.insert(key, base.clone());
-        Ok((base, true))
+        self.parts.bases.insert(params.object.location.clone(), base.clone());
+        Ok((base, is_new))
     }
 }
 

@@ -18,10 +18,11 @@ use crate::{
     shape::{SMOKE, SMOKE_TABLE},
     volume::{
         files::{
+            Label,
             roles::Roles,
             sequence::{Clock, Sequence},
         },
-        grid::{Catalogue, Held},
+        grid::{Catalogue, FARTHEST, Held, too_far},
     },
 };
 use parameters::{Parameters, Up};
@@ -129,28 +130,48 @@ fn container(
     let params = Params::new(smoke, library, &SMOKE_TABLE);
     let mut given = Parameters::read(&params, time)?;
     params.finish()?;
-    let mut file = Catalogue::open(&given.file.path)?;
-    let roles = Roles::of_file(&file.labels, given.wanted).map_err(|problem| problem.at(given.location))?;
-    let key = format!("{} {roles:?}", given.file.path.display());
-    let held = library.kept.recall(key, || file.held(roles))?;
-    let Held { roles, density, fire, empty } = &*held;
+    let moves = around.shutter != Shutter::default();
+    let key = format!("{} {:?} {moves}", given.file.path.display(), given.wanted);
+    let read = library.kept.recall(key, || Read::of(&given, moves))?;
+    let Read { labels, held, velocities, .. } = &*read;
+    let Held { roles, density, fire, empty } = held;
     let boxes = density.iter().chain(fire).map(|contents| contents.domain);
     let Some([low, high]) = boxes.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]) else {
         return Err(given.nothing_left());
     };
-    let glow = roles.temperature.zip(fire.as_ref()).map(|(number, fire)| {
-        let label = &file.labels[number];
-        given.glow(label, fire.hottest())
-    });
-    if given.up == Up::Auto && file.is_z_up() && around.is_y_up && !given.is_turned() {
+    let hottest = roles.temperature.zip(fire.as_ref()).map(|(number, fire)| (number, fire.hottest()));
+    let glow = hottest.map(|(number, hottest)| given.glow(&labels[number], hottest));
+    if given.up == Up::Auto && read.is_z_up && around.is_y_up && !given.is_turned() {
         given.up = Up::Z;
     }
-    let is_still = around.shutter == Shutter::default();
-    let velocity = if is_still { &[] } else { roles.velocity.as_slice() };
-    let key = format!("{} {velocity:?}", given.file.path.display());
-    let velocities = library.kept.recall(key, || file.velocities(velocity))?;
+    let velocity = if moves { roles.velocity.as_slice() } else { &[] };
     let room = around.shutter.ways(velocities.map(|bound| given.velocity_scale * bound));
-    let taken = Taken::new(smoke, &given, &file.labels, roles, empty, glow, velocity);
+    let times = (room[1].max(-room[0]) / (high - low)).max_element();
+    if times > FARTHEST {
+        return Err(too_far(times).at(given.location));
+    }
+    let taken = Taken::new(smoke, &given, labels, roles, empty, glow, velocity);
     let (object, medium) = parts::container(smoke, &given, &taken, [low + room[0], high + room[1]]);
     Ok((object, medium, taken))
+}
+
+/// What a file holds.
+struct Read {
+    labels: Vec<Label>,
+    is_z_up: bool,
+    held: Held,
+    /// Bounds of its velocities, where it `moves`.
+    velocities: [DVec3; 2],
+}
+
+impl Read {
+    fn of(given: &Parameters<'_>, moves: bool) -> Result<Self> {
+        let mut file = Catalogue::open(&given.file.path)?;
+        let roles =
+            Roles::of_file(&file.labels, given.wanted).map_err(|problem| problem.at(given.location))?;
+        let held = file.held(roles)?;
+        let velocity = if moves { held.roles.velocity.as_slice() } else { &[] };
+        let velocities = file.velocities(velocity)?;
+        Ok(Self { is_z_up: file.is_z_up(), labels: file.labels, held, velocities })
+    }
 }

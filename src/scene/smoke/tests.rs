@@ -3,10 +3,13 @@
 use crate::{
     error::{Error, Result},
     format,
-    math::{Bounds, DVec3, Spectrum},
+    math::{Bounds, DVec3, RaySegment, Spectrum, Vec3},
     medium::MediumIndex,
     phase::PhaseModel as _,
-    scene::build::{Setup, build},
+    scene::{
+        build::{Setup, build},
+        shutter::Shutter,
+    },
     settings::Overrides,
 };
 use flate2::read::GzDecoder;
@@ -15,6 +18,7 @@ use std::{
     io::Read as _,
     path::Path,
 };
+use tempfile::TempDir;
 
 /// Unpacks the file `name` of src/volume/files/samples into `folder`, as `target`.
 fn unpack(folder: &Path, name: &str, target: &str) {
@@ -309,4 +313,53 @@ fn fire_has_a_light_group() {
     let setup = smoke("houdini.vdb", r#", "group": "fire""#);
     assert_eq!(setup.scene.lights.groups(), ["fire", "rest"]);
     assert!(refused("houdini.vdb", r#", "group": """#, "").place.ends_with("$.plume.group"));
+}
+
+/// Smoke of a file with velocities, seen while the shutter is open from `opens` to `closes`.
+fn exposed(parameters: &str, opens: f64, closes: f64) -> Result<(TempDir, Setup)> {
+    let folder = tempfile::tempdir().unwrap();
+    unpack(folder.path(), "houdini.vdb", "smoke.vdb");
+    let text = format!(
+        r#"{{"type": "scene", "plume": {{"type": "smoke", "filename": "smoke.vdb", "emission_scale": 0 {parameters}}},
+            "sky": {{"type": "constant"}},
+            "camera": {{"type": "perspective", "shutter_open": {opens}, "shutter_close": {closes}}}}}"#
+    );
+    let path = folder.path().join("scene.json");
+    fs::write(&path, text).unwrap();
+    build(&format::read(&path, &[])?, Overrides::default()).map(|setup| (folder, setup))
+}
+
+/// What the smoke of `setup` is across a few places.
+fn depths(setup: &Setup) -> Vec<f32> {
+    let medium = setup.scene.media.iter().find_map(|medium| medium.heterogeneous()).unwrap();
+    let recentre = setup.scene.recentre.as_vec3();
+    let across = |i: i32| RaySegment {
+        origin: Vec3::new(-2.0, 0.2 * i as f32, 0.5) - recentre,
+        direction: Vec3::X,
+        length: 5.0,
+    };
+    (0..8).map(|i| medium.depth::<f32>(&across(i))).collect()
+}
+
+#[test]
+fn every_pass_sees_smoke_where_it_is_then() {
+    let shutter = Shutter { opens: -0.5, closes: 0.75 };
+    let (_folder, moving) = exposed("", -0.5, 0.75).unwrap();
+    assert_eq!(moving.exposure(), Some([-0.5, 0.75]));
+    let mut seen = Vec::new();
+    for pass in [0, 1, 7] {
+        let at = shutter.moment(5, pass);
+        let found = depths(&moving.moment(5, pass).unwrap().unwrap());
+        let expected = depths(&exposed("", at, at).unwrap().1);
+        assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-4), "{found:?} {expected:?}");
+        assert!(found.iter().sum::<f32>() > 0.1 && !seen.contains(&found), "pass {pass}");
+        seen.push(found);
+    }
+}
+
+#[test]
+fn velocities_of_another_unit_are_refused() {
+    let refused = exposed(r#", "velocity_scale": 1e30"#, 0.0, 1.0).map(drop).unwrap_err();
+    assert!(refused.to_string().contains("velocity_scale"), "{refused}");
+    assert!(exposed(r#", "velocity_grid": """#, 0.0, 1.0).unwrap().1.exposure().is_none());
 }

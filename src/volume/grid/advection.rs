@@ -66,33 +66,36 @@ impl Velocity {
 
     /// Bounds of every component.
     pub(super) fn range(&self) -> [DVec3; 2] {
-        let of = |grid: &files::Source| match &grid.samples {
-            files::Field::Grey(samples) => {
-                let all = samples.active().range.into_iter().chain([samples.background()]);
-                all.map(|value| DVec3::splat(value.into())).collect::<Vec<_>>()
-            }
-            files::Field::Colour(samples) => {
-                let all = samples.active().range.into_iter().chain([samples.background()]);
-                all.map(|value: Vec3| value.as_dvec3()).collect()
-            }
-        };
-        let ends: Vec<[DVec3; 2]> = self
-            .grids
-            .iter()
-            .map(|grid| {
-                let all = of(grid);
-                let bound =
-                    |pick: fn(DVec3, DVec3) -> DVec3| all.iter().copied().reduce(pick).unwrap_or_default();
-                [bound(DVec3::min), bound(DVec3::max)].map(|end| end * self.scale)
-            })
-            .collect();
+        let ends: Vec<[DVec3; 2]> = self.grids.iter().map(range).collect();
         let [low, high] = match ends.as_slice() {
             [x, y, z] => [0, 1].map(|end| DVec3::new(x[end].x, y[end].y, z[end].z)),
             [one, ..] => *one,
             [] => [DVec3::ZERO; 2],
-        };
+        }
+        .map(|end| end * self.scale);
         // A negative scale turns them round.
         [low.min(high), low.max(high)]
+    }
+}
+
+/// Bounds of what a grid holds in the box of its active voxels; of a single component in every one.
+fn range(grid: &files::Source) -> [DVec3; 2] {
+    let inside: u64 = grid.size().iter().map(|n| n.saturating_sub(2) as u64).product();
+    // Where others lie among them, the background is there too.
+    let with = |[low, high]: [DVec3; 2], background: DVec3, active: u64| match active < inside {
+        true => [low.min(background), high.max(background)],
+        false => [low, high],
+    };
+    match &grid.samples {
+        files::Field::Grey(samples) => {
+            let active = samples.active();
+            let wide = |value: f32| DVec3::splat(value.into());
+            with(active.range.map(wide), wide(samples.background()), active.count)
+        }
+        files::Field::Colour(samples) => {
+            let active = samples.active();
+            with(active.range.map(Vec3::as_dvec3), samples.background().as_dvec3(), active.count)
+        }
     }
 }
 
@@ -124,6 +127,7 @@ impl Flow {
             Values::Chromatic(samples) => samples.size(),
         };
         let drift = Drift::new(to_file, size, velocity, seconds);
+        drift.check(path)?;
         check_bricks(path, drift.size, &extent(drift.size, Filter::Trilinear, [DVec3::ZERO, DVec3::ONE]).0)?;
         let values = match values {
             Values::Grey(samples) => Values::Grey(Box::new(drift.carried(&**samples))),
@@ -143,9 +147,20 @@ struct Drift<'a> {
     given: [usize; 3],
     /// How far anything is carried, at least and at most.
     range: [DVec3; 2],
-    /// Samples more than the file has before its first one, and all samples.
-    before: [usize; 3],
+    /// Index of the first sample, counted from the file's first one, and all samples.
+    first: [i64; 3],
     size: [usize; 3],
+}
+
+/// How many times its size what is carried may get away: what gets farther has velocities of another unit.
+pub const FARTHEST: f64 = 100.0;
+
+/// Says that something is carried so many times its size.
+pub fn too_far(times: f64) -> files::Problem {
+    let expected = format!("a velocity that carries what it moves no farther than {FARTHEST} times its size");
+    let found = format!("{times:.3e} times while the shutter is open");
+    let remedy = "shorten the exposure (\"shutter_open\", \"shutter_close\"), or correct \"velocity_scale\"";
+    files::Problem::new(expected, found, remedy)
 }
 
 impl<'a> Drift<'a> {
@@ -155,17 +170,27 @@ impl<'a> Drift<'a> {
             *cube * DAffine3::from_scale(voxels.recip()) * DAffine3::from_translation(DVec3::splat(0.5));
         let linear = DAffine3::from_mat3(to_file.matrix3.inverse() * seconds);
         let range = image(&linear, velocity.range());
-        // No grid of so many samples fits in memory, which is told of the sum.
-        let count = |length: f64| length.ceil().clamp(0.0, 1e6) as usize;
-        let before = axes(|axis| count(-range[0][axis]));
-        let size = axes(|axis| before[axis] + given[axis] + count(range[1][axis]));
-        Self { to_file, velocity, seconds, given, range, before, size }
+        let first = axes(|axis| range[0][axis].floor() as i64);
+        let last = axes(|axis| given[axis] as i64 + range[1][axis].ceil() as i64);
+        let size = axes(|axis| last[axis].saturating_sub(first[axis]).max(1) as usize);
+        Self { to_file, velocity, seconds, given, range, first, size }
+    }
+
+    /// An error where it gets too far.
+    fn check(&self, path: &Path) -> Result<()> {
+        let farthest = self.range[0].abs().max(self.range[1].abs());
+        let times = axes(|axis| farthest[axis] / self.given[axis] as f64).into_iter().fold(0.0, f64::max);
+        if times <= FARTHEST {
+            return Ok(());
+        }
+        Err(too_far(times).at(path.display()))
     }
 
     /// From the unit cube of all samples to that of the file's.
     fn cube(&self) -> DAffine3 {
-        let part = |of: [usize; 3]| DVec3::from(axes(|axis| of[axis] as f64 / self.given[axis] as f64));
-        DAffine3::from_translation(-part(self.before)) * DAffine3::from_scale(part(self.size))
+        let given = DVec3::from(self.given.map(|n| n as f64));
+        let [first, size] = [self.first.map(|n| n as f64), self.size.map(|n| n as f64)].map(DVec3::from);
+        DAffine3::from_translation(first / given) * DAffine3::from_scale(size / given)
     }
 
     fn carried<V: Carried>(&self, samples: &dyn Samples<V>) -> Blocks<V> {
@@ -186,7 +211,7 @@ impl<'a> Drift<'a> {
         let offsets = (0..SIDE * SIDE * SIDE).map(|n| [n % SIDE, n / SIDE % SIDE, n / (SIDE * SIDE)]);
         let values: Vec<V> = offsets
             .map(|offset| {
-                let at = DVec3::from(axes(|i| (first[i] + offset[i]) as f64 - self.before[i] as f64));
+                let at = DVec3::from(axes(|i| (first[i] + offset[i]) as f64 + self.first[i] as f64));
                 between(samples, at - self.carried_by(at), Beyond::Nothing)
             })
             .collect();
@@ -204,7 +229,7 @@ impl<'a> Drift<'a> {
 
     /// The value of all of the block from `first` on, if wherever it may come from has that.
     fn known<V: Carried>(&self, samples: &dyn Samples<V>, first: [usize; 3]) -> Option<V> {
-        let start = |axis: usize| first[axis] as f64 - self.before[axis] as f64;
+        let start = |axis: usize| first[axis] as f64 + self.first[axis] as f64;
         let low = axes(|axis| (start(axis) - self.range[1][axis]).floor() - 1.0);
         let high = axes(|axis| (start(axis) + SIDE as f64 - self.range[0][axis]).ceil() + 1.0);
         let last = self.given.map(|n| (n - 1) as f64);

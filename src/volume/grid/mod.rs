@@ -40,6 +40,8 @@ use std::{
 use voxel::Voxel;
 use walk::{Line, Target, Walk};
 
+pub use advection::{FARTHEST, too_far};
+
 pub use crate::math::Wrap;
 pub use catalogue::{Catalogue, Contents, Held};
 pub use file::{Source, Values, is_volume, to_vol};

@@ -206,6 +206,7 @@ pub(super) fn all() -> Vec<Case> {
         Case::xml("unknown metal", r#"<bsdf type="conductor"><string name="material" value="Agg"/></bsdf>"#),
         Case::of("field of view of 180", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><float name="fov" value="180"/></sensor></scene>"#),
         Case::of("a shutter that closes before it opens", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><float name="shutter_open" value="1"/><float name="shutter_close" value="0.5"/></sensor></scene>"#),
+        Case::of("keyframes of a shutter", "scene.json", r#"{"type": "scene", "camera": {"type": "perspective", "shutter_close": {"type": "keyframes", "value": [[0, 1], [1, 2]]}}}"#),
         Case::of("near clip behind far clip", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><float name="near_clip" value="10"/><float name="far_clip" value="1"/></sensor></scene>"#),
         Case::of("film without width", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><film type="hdrfilm"><integer name="width" value="0"/></film></sensor></scene>"#),
         Case::of("film of enormous width", "scene.xml", r#"<scene version="3.0.0"><sensor type="perspective"><film type="hdrfilm"><integer name="width" value="1000000"/></film></sensor></scene>"#),
