@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    math::{DAffine3, DVec3, Vec3, axes, boxes::image},
+    math::{DAffine3, DMat3, DVec3, Vec3, axes, boxes::image},
 };
 use rayon::prelude::*;
 use std::{
@@ -20,6 +20,8 @@ use std::{
 /// How a file says that its contents move: in its own world, times `scale` (m/s).
 pub(super) struct Velocity {
     grids: Vec<files::Source>,
+    /// From the file's world to the samples of each.
+    to_samples: Vec<DAffine3>,
     scale: f64,
 }
 
@@ -44,22 +46,25 @@ impl Velocity {
             );
             return Err(problem.at(path.display()));
         }
-        Ok(Self { grids, scale })
+        let of_grid = |grid: &files::Source| {
+            let first = DVec3::from(grid.low.map(|i| i as f64));
+            DAffine3::from_translation(-first) * grid.to_world.inverse()
+        };
+        Ok(Self { to_samples: grids.iter().map(of_grid).collect(), grids, scale })
     }
 
     /// At `position` of the file's world; beyond the active voxels what the nearest have: what leaves them moves on.
     fn at(&self, position: DVec3) -> DVec3 {
-        let of = |grid: &files::Source| -> DVec3 {
-            let at =
-                grid.to_world.inverse().transform_point3(position) - DVec3::from(grid.low.map(|i| i as f64));
-            match &grid.samples {
+        let of = |number: usize| -> DVec3 {
+            let at = self.to_samples[number].transform_point3(position);
+            match &self.grids[number].samples {
                 files::Field::Grey(samples) => DVec3::splat(f64::from(between(samples, at, Beyond::Active))),
                 files::Field::Colour(samples) => between(samples, at, Beyond::Active).as_dvec3(),
             }
         };
-        let found = match self.grids.as_slice() {
-            [x, y, z] => DVec3::new(of(x).x, of(y).y, of(z).z),
-            grids => grids.iter().map(of).sum(),
+        let found = match self.grids.len() {
+            3 => DVec3::new(of(0).x, of(1).y, of(2).z),
+            _ => of(0),
         };
         found * self.scale
     }
@@ -141,8 +146,9 @@ impl Flow {
 struct Drift<'a> {
     /// From indices of the file's samples to its world.
     to_file: DAffine3,
+    /// From velocities in that to what they carry within the time (samples).
+    to_way: DMat3,
     velocity: &'a Velocity,
-    seconds: f64,
     /// Samples that the file has.
     given: [usize; 3],
     /// How far anything is carried, at least and at most.
@@ -168,12 +174,12 @@ impl<'a> Drift<'a> {
         let voxels = DVec3::from(given.map(|n| n as f64));
         let to_file =
             *cube * DAffine3::from_scale(voxels.recip()) * DAffine3::from_translation(DVec3::splat(0.5));
-        let linear = DAffine3::from_mat3(to_file.matrix3.inverse() * seconds);
-        let range = image(&linear, velocity.range());
+        let to_way = to_file.matrix3.inverse() * seconds;
+        let range = image(&DAffine3::from_mat3(to_way), velocity.range());
         let first = axes(|axis| range[0][axis].floor() as i64);
         let last = axes(|axis| given[axis] as i64 + range[1][axis].ceil() as i64);
         let size = axes(|axis| last[axis].saturating_sub(first[axis]).max(1) as usize);
-        Self { to_file, velocity, seconds, given, range, first, size }
+        Self { to_file, to_way, velocity, given, range, first, size }
     }
 
     /// An error where it gets too far.
@@ -223,8 +229,7 @@ impl<'a> Drift<'a> {
 
     /// How far what is now at the sample `at` was carried.
     fn carried_by(&self, at: DVec3) -> DVec3 {
-        let velocity = self.velocity.at(self.to_file.transform_point3(at));
-        self.to_file.matrix3.inverse() * velocity * self.seconds
+        self.to_way * self.velocity.at(self.to_file.transform_point3(at))
     }
 
     /// The value of all of the block from `first` on, if wherever it may come from has that.
