@@ -91,11 +91,12 @@ pub(super) struct Moving {
 }
 
 impl Moving {
-    /// Builds the scene as it is so many seconds `after` its time.
+    /// Builds the scene as it is so many seconds `after` its time, which errors tell where keyframes make numbers of their own.
     fn assemble(&self, overrides: Overrides, before: Option<&Before<'_>>, after: f64) -> Result<Setup> {
-        assemble(self, overrides, before, after).map_err(|error| match after == 0.0 {
-            true => error,
-            false => Error { place: format!("{after} s after the scene's time: {}", error.place), ..error },
+        let is_told = after != 0.0 && keyframes::has_any(&self.root);
+        assemble(self, overrides, before, after).map_err(|error| match is_told {
+            false => error,
+            true => Error { place: format!("{after} s after the scene's time: {}", error.place), ..error },
         })
     }
 }
