@@ -23,6 +23,8 @@ pub(super) struct Velocity {
     /// From the file's world to the samples of each.
     to_samples: Vec<DAffine3>,
     scale: f64,
+    /// Bounds of every component.
+    range: [DVec3; 2],
 }
 
 impl Velocity {
@@ -38,19 +40,23 @@ impl Velocity {
             let problem = files::Problem::new("a velocity of three components", found, remedy);
             return Err(problem.at(path.display()));
         }
-        if grids.iter().any(|grid| !is_finite(grid)) {
-            let problem = files::Problem::new(
-                "finite velocities",
-                format!("others in \"{names}\""),
-                "correct the grid, or set \"velocity_grid\" to \"\"",
-            );
-            return Err(problem.at(path.display()));
-        }
+        let Some(bounds) = grids.iter().map(bounds).collect::<Option<Vec<_>>>() else {
+            let found = format!("others in \"{names}\"");
+            let remedy = "correct the grid, or set \"velocity_grid\" to \"\"";
+            return Err(files::Problem::new("finite velocities", found, remedy).at(path.display()));
+        };
         let of_grid = |grid: &files::Source| {
             let first = DVec3::from(grid.low.map(|i| i as f64));
             DAffine3::from_translation(-first) * grid.to_world.inverse()
         };
-        Ok(Self { to_samples: grids.iter().map(of_grid).collect(), grids, scale })
+        let [low, high] = match bounds.as_slice() {
+            [x, y, z] => [0, 1].map(|end| DVec3::new(x[end].x, y[end].y, z[end].z)),
+            others => others.first().copied().unwrap_or_default(),
+        }
+        .map(|end| end * scale);
+        // A negative scale turns them round.
+        let range = [low.min(high), low.max(high)];
+        Ok(Self { to_samples: grids.iter().map(of_grid).collect(), grids, scale, range })
     }
 
     /// At `position` of the file's world; beyond the active voxels what the nearest have: what leaves them moves on.
@@ -68,51 +74,20 @@ impl Velocity {
         };
         found * self.scale
     }
-
-    /// Bounds of every component.
-    pub(super) fn range(&self) -> [DVec3; 2] {
-        let ends: Vec<[DVec3; 2]> = self.grids.iter().map(range).collect();
-        let [low, high] = match ends.as_slice() {
-            [x, y, z] => [0, 1].map(|end| DVec3::new(x[end].x, y[end].y, z[end].z)),
-            [one, ..] => *one,
-            [] => [DVec3::ZERO; 2],
-        }
-        .map(|end| end * self.scale);
-        // A negative scale turns them round.
-        [low.min(high), low.max(high)]
-    }
 }
 
-/// Bounds of what a grid holds in the box of its active voxels; of a single component in every one.
-fn range(grid: &files::Source) -> [DVec3; 2] {
-    let inside: u64 = grid.size().iter().map(|n| n.saturating_sub(2) as u64).product();
-    // Where others lie among them, the background is there too.
-    let with = |[low, high]: [DVec3; 2], background: DVec3, active: u64| match active < inside {
-        true => [low.min(background), high.max(background)],
-        false => [low, high],
+/// Bounds of all that a grid holds; of a single component in every one. None if not all is finite.
+fn bounds(grid: &files::Source) -> Option<[DVec3; 2]> {
+    let (mut is_finite, mut bounds) = (true, [DVec3::INFINITY, DVec3::NEG_INFINITY]);
+    let mut see = |value: DVec3| {
+        is_finite &= value.is_finite();
+        bounds = [bounds[0].min(value), bounds[1].max(value)];
     };
     match &grid.samples {
-        files::Field::Grey(samples) => {
-            let active = samples.active();
-            let wide = |value: f32| DVec3::splat(value.into());
-            with(active.range.map(wide), wide(samples.background()), active.count)
-        }
-        files::Field::Colour(samples) => {
-            let active = samples.active();
-            with(active.range.map(Vec3::as_dvec3), samples.background().as_dvec3(), active.count)
-        }
+        files::Field::Grey(samples) => samples.each(&mut |_, value: f32, _| see(DVec3::splat(value.into()))),
+        files::Field::Colour(samples) => samples.each(&mut |_, value: Vec3, _| see(value.as_dvec3())),
     }
-}
-
-fn is_finite(grid: &files::Source) -> bool {
-    let mut is_finite = true;
-    match &grid.samples {
-        files::Field::Grey(samples) => samples.each(&mut |_, value: f32, _| is_finite &= value.is_finite()),
-        files::Field::Colour(samples) => {
-            samples.each(&mut |_, value: Vec3, _| is_finite &= value.is_finite())
-        }
-    }
-    is_finite
+    is_finite.then_some(bounds)
 }
 
 /// A grid and how it moves, kept while the shutter is open.
@@ -175,9 +150,9 @@ impl<'a> Drift<'a> {
         let to_file =
             *cube * DAffine3::from_scale(voxels.recip()) * DAffine3::from_translation(DVec3::splat(0.5));
         let to_way = to_file.matrix3.inverse() * seconds;
-        let range = image(&DAffine3::from_mat3(to_way), velocity.range());
+        let range = image(&DAffine3::from_mat3(to_way), velocity.range);
         let first = axes(|axis| range[0][axis].floor() as i64);
-        let last = axes(|axis| given[axis] as i64 + range[1][axis].ceil() as i64);
+        let last = axes(|axis| (range[1][axis].ceil() as i64).saturating_add(given[axis] as i64));
         let size = axes(|axis| last[axis].saturating_sub(first[axis]).max(1) as usize);
         Self { to_file, to_way, velocity, given, range, first, size }
     }
