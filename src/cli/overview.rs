@@ -76,8 +76,8 @@ impl Overview {
         }
         if let Some([opens, closes]) = self.exposure {
             lines.push(format!(
-                "exposure    from {opens} to {closes} s after the scene's time: every sample of a pixel sees another moment; \
-                 here is said what there is halfway"
+                "exposure    from {opens} to {closes} s after the scene's time: every sample of a pixel sees another moment. \
+                 The other lines describe the scene halfway"
             ));
         }
         lines

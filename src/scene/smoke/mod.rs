@@ -144,13 +144,12 @@ fn container(
     if given.up == Up::Auto && read.is_z_up && around.is_y_up && !given.is_turned() {
         given.up = Up::Z;
     }
-    let velocity = if moves { roles.velocity.as_slice() } else { &[] };
     let room = around.shutter.ways(velocities.map(|bound| given.velocity_scale * bound));
     let times = (room[1].max(-room[0]) / (high - low)).max_element();
     if times > FARTHEST {
         return Err(too_far(times).at(given.location));
     }
-    let taken = Taken::new(smoke, &given, labels, roles, empty, glow, velocity);
+    let taken = Taken::new(smoke, &given, labels, roles, empty, glow);
     let (object, medium) = parts::container(smoke, &given, &taken, [low + room[0], high + room[1]]);
     Ok((object, medium, taken))
 }
@@ -169,9 +168,11 @@ impl Read {
         let mut file = Catalogue::open(&given.file.path)?;
         let roles =
             Roles::of_file(&file.labels, given.wanted).map_err(|problem| problem.at(given.location))?;
-        let held = file.held(roles)?;
-        let velocity = if moves { held.roles.velocity.as_slice() } else { &[] };
-        let velocities = file.velocities(velocity)?;
+        let mut held = file.held(roles)?;
+        if !moves {
+            held.roles.velocity.clear();
+        }
+        let velocities = file.velocities(&held.roles.velocity)?;
         Ok(Self { is_z_up: file.is_z_up(), labels: file.labels, held, velocities })
     }
 }

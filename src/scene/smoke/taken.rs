@@ -53,8 +53,7 @@ pub struct Glow {
 }
 
 impl Taken {
-    /// What of the grids called `labels` became the smoke that is `given`, by their `roles`; `empty` ones have none, and
-    /// it moves by the `velocity`.
+    /// What of the grids called `labels` became the smoke that is `given`, by their `roles`; `empty` ones have none.
     pub fn new(
         smoke: &Object,
         given: &Parameters<'_>,
@@ -62,10 +61,8 @@ impl Taken {
         roles: &Roles,
         empty: &[usize],
         glow: Option<Glow>,
-        velocity: &[usize],
     ) -> Self {
-        let is_unused = |number: &usize| !roles.has(*number) && !velocity.contains(number);
-        let unused = labels.iter().enumerate().filter(|(number, _)| is_unused(number));
+        let unused = labels.iter().enumerate().filter(|(number, _)| !roles.has(*number));
         Self {
             name: smoke.id.clone().unwrap_or_else(|| smoke.plugin.clone()),
             file: given.file.path.clone(),
@@ -76,7 +73,7 @@ impl Taken {
             is_surface: roles.density.is_some_and(|number| labels[number].is_level_set()),
             glow,
             color: roles.color.iter().map(|number| labels[*number].name.clone()).collect(),
-            velocity: velocity.iter().map(|number| labels[*number].name.clone()).collect(),
+            velocity: roles.velocity.iter().map(|number| labels[*number].name.clone()).collect(),
             unused: unused.map(|(number, label)| described(label, empty.contains(&number))).collect(),
         }
     }

@@ -146,9 +146,10 @@ impl Roles {
         Ok(Self { density, temperature, color, velocity })
     }
 
-    /// True if grid `number` is for anything that does not move.
+    /// True if grid `number` is for anything.
     pub fn has(&self, number: usize) -> bool {
-        self.density == Some(number) || self.temperature == Some(number) || self.color.contains(&number)
+        let is_one = self.density == Some(number) || self.temperature == Some(number);
+        is_one || self.color.contains(&number) || self.velocity.contains(&number)
     }
 }
 
