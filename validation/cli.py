@@ -8,7 +8,7 @@ from tyndall.failure import Failure
 from tyndall.scene import open_scene
 from tyndall import judging
 from validation import assets, bias, cells, compare, comparison_page, coverage, efficiency, full, gallery, growth, instructions, lottery
-from validation import matrix, package_tests, page, progressive, rays, reach, references, selftest, thresholds, truths
+from validation import matrix, package_tests, page, progressive, rays, reach, record, references, selftest, thresholds, truths
 from validation.cluster import cli as cluster
 from validation.compare import Effort
 from validation.files import made_by_command
@@ -18,9 +18,11 @@ Commands = argparse._SubParsersAction  # argparse gives it no public name
 MEASURES = {
     "efficiency": (efficiency, "Time to equal error against Mitsuba and others of our own, as one number a scene."),
     "gallery": (gallery, "Renders the scenes of scenes/gallery, and Mitsuba for the same seconds, for the table of scenes/README.md."),
+    "growth": (growth, "How the cost of a sample grows with depth, triangles, voxels, lights, pixels and threads."),
     "bias": (bias, "Bias of ray marching against its step, in a cosine cloud and a noise cloud."),
     "progressive": (progressive, "Progressive pictures against as many pixels on a regular grid, on four scenes."),
     "thresholds": (thresholds, "P03T's tests A-F at its own thresholds: time with a guide and without, learning included."),
+    "record": (record, "Renews the reports that are out of date, and the tables that pages take from them."),
     "lottery": (lottery, "The default choice of strategies against others, in scenes that nobody made."),
 }
 """Commands whose modules know their options."""
@@ -161,8 +163,6 @@ def run_closed_forms(options: argparse.Namespace) -> bool:
 def add_recorded(commands: Commands) -> None:
     command = add(commands, "instructions", lambda options: instructions.run(options.record), "Instructions per sample of three scenes, by valgrind, against those recorded.")
     command.add_argument("--record", action="store_true", help="record them anew")
-    command = add(commands, "growth", lambda options: growth.run(options.output), "How the cost of a sample grows with depth, triangles, voxels, lights, pixels and threads.")
-    command.add_argument("--output", type=Path, help="folder for growth.md and .json (default: validation/reports)")
 
 
 def add_page(commands: Commands) -> None:

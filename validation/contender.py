@@ -19,7 +19,8 @@ from typing import Any
 STARTED = time.perf_counter()
 INTEGRATORS = ("volpath", "volpathmis")
 VARIANTS = ("llvm_ad_rgb", "scalar_rgb")
-WAVEFRONT = 4_000_000
+GPU = "cuda_ad_rgb"
+WAVEFRONT = {VARIANTS[0]: 4_000_000, GPU: 16_000_000}
 """Compiled variants hold all samples of a pass at once; more of them would only cost memory."""
 
 
@@ -39,7 +40,7 @@ def main(arguments: list[str]) -> None:
     import mitsuba as mi
 
     integrator = mi.load_dict(integrator_like(load(scene), options.integrator))
-    if options.variant.startswith("llvm"):
+    if options.variant in WAVEFRONT:
         for spp in (2, 3):  # a kernel for powers of two, and one for other numbers
             mitsuba.image(loaded, spp, 0, integrator)
         dr.sync_thread()
@@ -51,7 +52,7 @@ def parser() -> argparse.ArgumentParser:
     command = argparse.ArgumentParser(prog="python3 -m validation.contender", description="Mitsuba as a contender of tyndall study.")
     command.add_argument("scene", type=Path)
     command.add_argument("--integrator", choices=INTEGRATORS, default=INTEGRATORS[0])
-    command.add_argument("--variant", choices=VARIANTS, default=VARIANTS[0])
+    command.add_argument("--variant", choices=(*VARIANTS, GPU), default=VARIANTS[0])
     command.add_argument("--tyndall", metavar="OPTIONS", help="of `tyndall render`, which renders in Mitsuba's place")
     command.add_argument("--seed", type=int, required=True)
     command.add_argument("--spp", type=lambda text: [int(spp) for spp in text.split(",")], required=True, help="growing numbers, separated by commas")
@@ -87,7 +88,8 @@ def render(loaded: Any, integrator: Any, options: argparse.Namespace) -> None:
 
     load_seconds = time.perf_counter() - STARTED
     width, height = loaded.sensors()[0].film().crop_size()
-    most = max(1, WAVEFRONT // (int(width) * int(height))) if options.variant.startswith("llvm") else max(options.spp)
+    wavefront = WAVEFRONT.get(options.variant)
+    most = max(1, wavefront // (int(width) * int(height))) if wavefront else max(options.spp)
     total, done, passes, seconds = np.zeros((int(height), int(width), 3)), 0, 0, 0.0
     for spp in options.spp:
         start = time.perf_counter()

@@ -4,6 +4,7 @@ boxes; the references are long renders that are kept."""
 
 import argparse
 import math
+import subprocess
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Any
 
 from tyndall.failure import Failure
 from validation import guide, models, studies, volumes
-from validation.contender import INTEGRATORS
+from validation.contender import GPU, INTEGRATORS
 from validation.files import write_report
 from validation.places import EFFICIENCY, OUTPUT, REPORTS, SCENES
 from tyndall.statistics import Ratio
@@ -85,6 +86,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
     command.add_argument("--quick", action="store_true", help="3 seeds, short renders, and of our own only pt: ten minutes")
     command.add_argument("--ours", metavar="OPTIONS", help='the options of `tyndall render` to judge (default "--integrator bdpt", of models pt)')
     command.add_argument("--against", metavar="LIST", help=f"the others, separated by commas: any of the suite's ({known}; default: all but the variants of Mitsuba's)")
+    command.add_argument("--variant", metavar="NAME", help=f"Mitsuba's integrators by this variant besides: with {GPU}, where there is a GPU, the table has a column for it")
     command.add_argument("--contender", metavar="NAME: OPTIONS", action="append", default=[], help="another one, by options of `tyndall render`")
     command.add_argument("--points", type=int, default=1, help="budgets, each twice the one before: curves of error against time (default %(default)s)")
     command.add_argument("--seeds", type=int, help="independent renders of each contender, at least 2 (default 10; of models 4, quick 3)")
@@ -130,6 +132,7 @@ def contenders(suite: Suite, options: argparse.Namespace) -> dict[str, str]:
     """Their names and options, ours first."""
     usual = [name for name in (*suite.others, *suite.theirs) if not options.quick or name in ("pt", *suite.theirs)]
     names = options.against.split(",") if options.against is not None else usual
+    names += [f"{kind}:{options.variant}" for kind in INTEGRATORS if options.variant]
     known = {**OWN, **suite.others, **dict.fromkeys((*INTEGRATORS, *MITSUBA), "")}
     wrong = next((name for name in names if name and name not in known), None)
     if wrong:
@@ -149,7 +152,9 @@ class Row:
     wanted: float | None
     ours: float
     theirs: tuple[str, Ratio] | None
-    """The better of Mitsuba's, where it can render the scene."""
+    """The better of Mitsuba's on processors, where it can render the scene."""
+    gpu: Ratio | None
+    """Likewise on a GPU."""
     of_sample: tuple[float, float] | None
     """relMSE and seconds of a sample, Mitsuba's over ours."""
     own: dict[str, Ratio]
@@ -178,14 +183,16 @@ def row_of(scene: Found) -> Row:
     if OURS not in scene.costs:
         raise Failure(f"{scene.name}: Tyndall could not render it: {'; '.join(scene.notes)}", "measure without this scene")
     ratios = {name: scene.ratio(name) for name in scene.costs if name != OURS}
-    theirs = min(((name, ratio) for name, ratio in ratios.items() if name.startswith("mitsuba ")), key=lambda one: one[1].mean, default=None)
+    mitsuba = [(name, ratio) for name, ratio in ratios.items() if name.startswith("mitsuba ")]
+    theirs = min((one for one in mitsuba if GPU not in one[0]), key=lambda one: one[1].mean, default=None)
+    gpu = min((ratio for name, ratio in mitsuba if GPU in name), key=lambda ratio: ratio.mean, default=None)
     wanted = next((wanted for path, wanted in WANTED.items() if theirs and path.stem == scene.name), None)
     samples = {one["name"]: per_sample(one) for one in scene.told["contenders"]}
     (error, seconds), (other_error, other_seconds) = samples[OURS], samples[theirs[0] if theirs else OURS]
     of_sample = (other_error / error, other_seconds / seconds) if theirs else None
     own = {name: ratio for name, ratio in ratios.items() if not name.startswith("mitsuba ")}
     share = scene.noise * scene.told["contenders"][0]["points"][-1]["samples"] / error
-    return Row(scene.name, wanted, scene.cost(), theirs, of_sample, own, share, scene.notes)
+    return Row(scene.name, wanted, scene.cost(), theirs, gpu, of_sample, own, share, scene.notes)
 
 
 def per_sample(contender: dict[str, Any]) -> tuple[float, float]:
@@ -202,14 +209,16 @@ def page(rows: list[Row], study: dict[str, Any]) -> str:
     outdone = ", ".join(f"{row.scene} ({name})" for row in rows for name, ratio in row.own.items() if ratio.mean < 1 - WORSE) or "none"
     others = list(dict.fromkeys(name for row in rows for name in row.own))
     wanted = f"; wanted: {WANTED_MEAN}" if {row.scene for row in rows} == {path.stem for path in WANTED} else ""
-    size = study["scenes"][0]
+    size, gpus = study["scenes"][0], [row.gpu for row in rows if row.gpu]
+    on = f" and {gpu_name()}" if gpus else ""
     return "\n".join([
-        f"relMSE x seconds, {size['width']} x {size['height']}; {study['made_by']}, Mitsuba 3.9.1; {study['machine']}",
+        f"relMSE x seconds, {size['width']} x {size['height']}; {study['made_by']}, Mitsuba 3.9.1; {study['machine']}{on}",
         "for each contender, which took turns; pilots and learning are among the seconds; intervals hold 95 %.", "",
-        f"| scene | Tyndall | Mitsuba, the better | ratio | of a sample: error, time | wanted |{''.join(f' over {name} |' for name in others)} reference |",
-        "|---" * (7 + len(others)) + "|",
-        *(table_line(row, others) for row in rows), "",
+        f"| scene | Tyndall | Mitsuba, the better | ratio | of a sample: error, time | wanted |{' over a GPU |' if gpus else ''}{''.join(f' over {name} |' for name in others)} reference |",
+        "|---" * (7 + len(others) + bool(gpus)) + "|",
+        *(table_line(row, others, bool(gpus)) for row in rows), "",
         *([f"- Geometric mean of {len(ratios)} ratios: {Ratio.geometric(ratios)}{wanted}."] if ratios else []),
+        *([f"- Over the GPU: {Ratio.geometric(gpus)}, above 1 in {sum(ratio.mean > 1 for ratio in gpus)} of {len(gpus)}."] if gpus else []),
         f"- Scenes below 1: {below}.",
         f"- Scenes where another of ours is more than {100 * WORSE:g} % more efficient: {outdone}.",
         "- of a sample: the relMSE and the seconds of a sample of each pixel, Mitsuba's over ours; their product is about the ratio.",
@@ -218,13 +227,18 @@ def page(rows: list[Row], study: dict[str, Any]) -> str:
     ])  # fmt: skip
 
 
-def table_line(row: Row, others: Sequence[str]) -> str:
+def gpu_name() -> str:
+    """As its driver calls it."""
+    return subprocess.run(["nvidia-smi", "--query-gpu=name", "--format=csv,noheader"], capture_output=True, text=True).stdout.strip()
+
+
+def table_line(row: Row, others: Sequence[str], has_gpu: bool = False) -> str:
     """A row in Markdown."""
     theirs = f"{row.ours * row.theirs[1].mean:.3g} ({row.theirs[0].removeprefix('mitsuba ')}) | {row.theirs[1]}" if row.theirs else "none | "
     of_sample = f"{row.of_sample[0]:.3g}, {row.of_sample[1]:.2g}" if row.of_sample else ""
     wanted = "" if row.wanted is None else f"{row.wanted:g}"
     over = " | ".join(f"{row.own.get(name, '')}{aim(name, row.scene)}" for name in others)
-    return f"| {row.scene} | {row.ours:.3g} | {theirs} | {of_sample} | {wanted} | {f'{over} | ' if others else ''}{100 * row.reference:.2g} % |"
+    return f"| {row.scene} | {row.ours:.3g} | {theirs} | {of_sample} | {wanted} | {f'{row.gpu} | ' if has_gpu else ''}{f'{over} | ' if others else ''}{100 * row.reference:.2g} % |"
 
 
 def aim(other: str, scene: str) -> str:

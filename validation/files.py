@@ -6,6 +6,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from validation.made import Made
+
 
 def write_text(path: Path, text: str) -> None:
     """Writes a text file, its folder made if need be; whoever stops this halfway leaves the old file as it was."""
@@ -16,13 +18,16 @@ def write_text(path: Path, text: str) -> None:
 
 
 def made_by_command() -> str:
-    """The command that is running, which makes it again."""
-    return shlex.join(["python3", "-m", "validation", *sys.argv[1:]])
+    """The command that is running, which makes it again, but for where its results go."""
+    words = sys.argv[1:]
+    kept = [word for i, word in enumerate(words) if not word.startswith("--output") and words[i - 1 : i] != ["--output"]]
+    return shlex.join(["python3", "-m", "validation", *kept])
 
 
 def write_report(name: str, title: str, text: str, found: Any, *folders: Path) -> None:
     """Prints a report and writes it to folders as NAME.md, what programs may read of it, if anything, as NAME.json."""
-    whole = f"# {title}\n\n    {made_by_command()}\n\n{text}"
+    made = Made.by(made_by_command())
+    whole = f"# {title}\n\n    {made.command}\n\n{made}.\n\n{text}"
     print(whole)
     for folder in folders:
         write_text(folder / f"{name}.md", whole)

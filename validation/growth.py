@@ -1,6 +1,7 @@
 """How the cost of a sample grows with the scene and with what is asked for: depth, triangles, voxels, lights, pixels, samples,
 threads; and how long the program takes to start. Instructions, counted by valgrind, where that says enough; seconds else."""
 
+import argparse
 import math
 import os
 import shutil
@@ -8,6 +9,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -49,14 +51,24 @@ class Curve:
         return self.growth <= self.most
 
 
-def run(output: Path | None) -> bool:
-    """Measures, writes growth.md and .json, and judges."""
+def add_options(command: argparse.ArgumentParser) -> None:
+    """Those of the command line."""
+    command.add_argument("--threads", action="store_true", help="only the speed by threads, beside as many processes: threads.md; needs an idle machine")
+    command.add_argument("--output", type=Path, default=REPORTS, help="folder for growth.md or threads.md, and .json (default %(default)s)")
+
+
+def run(options: argparse.Namespace) -> bool:
+    """Measures, writes the report, and judges."""
+    if options.threads:
+        curves = list(threads())
+        write_report("threads", "How speed grows with threads", "\n".join(map(line, curves)), {"curves": [asdict(curve) for curve in curves]}, options.output)
+        return True
     if shutil.which("valgrind") is None:
         raise Failure("valgrind was not found", "apt install valgrind")
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
         curves = list(curves_in(Path(folder)))
     start = starting()
-    write_report("growth", "How cost grows", page(curves, start), {"curves": [asdict(curve) for curve in curves], "start_seconds": start}, output or REPORTS)
+    write_report("growth", "How cost grows", page(curves, start), {"curves": [asdict(curve) for curve in curves], "start_seconds": start}, options.output)
     return all(curve.holds for curve in curves) and start < LONGEST_START
 
 
@@ -112,30 +124,46 @@ COSTS: tuple[tuple[Callable[[int, Path], float], Sequence[int], tuple[str, str, 
     (memory, (1, 4, 16, 64), ("samples per pixel", "greatest memory in MB", "lampbox_up, 256 x 256", 1.05)),
 )
 """What costs, where it is measured, and what the curve says of it."""
-TURNS = 7
+TURNS = 3
 LONGEST_START = 0.01
 """Seconds from the command to its end, where there is nothing to do."""
 
 
 def curves_in(folder: Path) -> Iterator[Curve]:
-    """All of them, printed as they come."""
+    """All that is counted, printed as they come."""
     for cost, at, (over, of, remark, most) in COSTS:
-        found = Curve(over, of, [(x, cost(x, folder)) for x in at], remark, most)
-        print(line(found), flush=True)
-        yield found
-    yield threads()
+        yield told(Curve(over, of, [(x, cost(x, folder)) for x in at], remark, most))
 
 
-def threads() -> Curve:
-    """Samples per second of two threads over those of one: the median of turns."""
-    ratios = sorted(seconds(1) / seconds(2) for _ in range(TURNS))
-    return Curve("threads", "times the speed of one", [(1, 1.0), (2, ratios[TURNS // 2])], "lampbox_up, 256 x 256; the median of seven turns, seconds by a clock")
+def told(found: Curve) -> Curve:
+    """Printed."""
+    print(line(found), flush=True)
+    return found
+
+
+def threads() -> Iterator[Curve]:
+    """How many times the samples of one thread a second has: more threads in a process, and as many processes of one thread each. What
+    processes lose too is the machine's: shared caches, clocks, two threads to a core."""
+    counts = [2**i for i in range((os.cpu_count() or 1).bit_length())]
+    turns = [(seconds(1), [seconds(n) for n in counts], [at_once(n) for n in counts]) for _ in range(TURNS)]
+    remark = f"lampbox_up, 256 x 256; the median of {TURNS} turns, seconds by a clock"
+    for over, speeds in (
+        ("threads", [[alone / each for each in by] for alone, by, _ in turns]),
+        ("processes", [[n * alone / each for n, each in zip(counts, by)] for alone, _, by in turns]),
+    ):
+        yield told(Curve(over, "times the speed of one", [(n, float(np.median(of))) for n, of in zip(counts, zip(*speeds))], remark))
 
 
 def seconds(count: int) -> float:
     """Of a render on so many threads."""
-    options: dict[str, Any] = {"spp": 24, "size": (256, 256), "strategies": tyndall.ALL_STRATEGIES}
+    options: dict[str, Any] = {"spp": 12, "size": (256, 256), "strategies": tyndall.ALL_STRATEGIES}
     return tyndall.run(SCENES / "lampbox_up.xml", threads=count, **options).render_seconds
+
+
+def at_once(count: int) -> float:
+    """Of the same render on one thread, the mean of so many processes that run together."""
+    with ThreadPoolExecutor(count) as pool:
+        return float(np.mean(list(pool.map(lambda _: seconds(1), range(count)))))
 
 
 def most_memory(command: list[str]) -> float:

@@ -17,11 +17,11 @@ from typing import Any
 from tyndall import program
 from tyndall.failure import Failure
 from validation import mitsuba
-from validation.contender import INTEGRATORS, VARIANTS
+from validation.contender import GPU, INTEGRATORS, VARIANTS
 from validation.places import OUTPUT
 from tyndall.statistics import Ratio
 
-MITSUBA = tuple(f"{kind}:{variant}" for kind in INTEGRATORS for variant in VARIANTS)
+MITSUBA = tuple(f"{kind}:{variant}" for kind in INTEGRATORS for variant in (*VARIANTS, GPU))
 """Contenders of Mitsuba's; the integrator alone is one by the faster variant that there is."""
 OURS = "tyndall"
 """The contender that the others are compared with."""

@@ -2,19 +2,14 @@
 
 import json
 import math
-import os
-import platform
-import subprocess
-import time
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from itertools import groupby
 from pathlib import Path
 
-from tyndall import program
 from tyndall.statistics import SIGNIFICANCE
 from validation.files import write_text
-from validation.places import ROOT
+from validation.made import Made
 from validation.stability.case import AIM, LIGHT_AIM, Case
 from validation.stability.judge import REQUIRED, TILES, Found, refused
 
@@ -52,49 +47,6 @@ class Line:
         if is_refused or self.found is None:
             return FAILS
         return HOLDS if self.resolution <= REQUIRED else UNDECIDED
-
-
-@dataclass(frozen=True)
-class Made:
-    """How a table was made."""
-
-    command: str
-    version: str
-    commit: str
-    """Of the sources beside the table, with a remark if they have changed since."""
-    date: str
-    processor: str
-    load: float
-    """Processes that ran or waited during the minute before."""
-    start: float
-    seconds: float = 0
-    """Until it was done; lines that were taken over from before took none of them."""
-
-    @staticmethod
-    def now(command: str) -> "Made":
-        """Of what begins."""
-        version = program.call([str(program.binary()), "--version"]).stdout.strip()
-        return Made(command, version, commit(), time.strftime("%Y-%m-%d", time.gmtime()), processor(), os.getloadavg()[0], time.monotonic())
-
-    def ended(self) -> "Made":
-        return replace(self, seconds=time.monotonic() - self.start)
-
-    def __str__(self) -> str:
-        return f"{self.version}, commit {self.commit}, {self.date}; {self.processor}, load {self.load:.2f} at the start; {self.seconds:.0f} s"
-
-
-def commit() -> str:
-    """Of this clone."""
-    told = lambda *words: subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout.strip()
-    changed = " and changes" if told("status", "--porcelain", "--untracked-files=no") else ""
-    return (told("rev-parse", "--short", "HEAD") or "unknown") + changed
-
-
-def processor() -> str:
-    """Its name and how many there are."""
-    information = Path("/proc/cpuinfo")
-    named = (line.split(":")[1].strip() for line in information.read_text().splitlines() if line.startswith("model name")) if information.is_file() else ()
-    return f"{next(iter(named), platform.machine())}, {os.cpu_count()} of them"
 
 
 def short(line: Line) -> str:

@@ -9,7 +9,6 @@ import json
 import multiprocessing
 import os
 import resource
-import sys
 import zlib
 from collections import Counter
 from collections.abc import Iterator
@@ -23,6 +22,8 @@ import tyndall
 from tyndall.failure import Failure
 from tyndall.scene import Scene, changed
 from validation.compare import options_of
+from validation.files import made_by_command
+from validation.made import Made
 from validation.stability import albedo, anisotropy, balls, boundaries, choices, contrast, fluence, grazing, index, lamps, overlaps, published, report, scale, thickness, trackers, voids, walks
 from validation.stability.case import AIM, LIGHT_AIM, Case
 from validation.stability.kept import binary
@@ -88,7 +89,6 @@ def run(effort: Effort, output: Path, only: str = "", quick: bool = False, worke
     chosen = jobs(only)
     if not chosen:
         raise Failure(f"no line of the stability table contains {only!r}", "name a part of a row or of a case, or leave --only out")
-    made = report.Made.now(command(sys.argv[1:]))
     records = output / "lines.jsonl"
     if anew:
         records.unlink(missing_ok=True)
@@ -97,16 +97,10 @@ def run(effort: Effort, output: Path, only: str = "", quick: bool = False, worke
     for line in found_lines(chosen, effort, records, workers or os.cpu_count() or 1):
         lines.append(line)
         print(report.short(line), flush=True)
-    table = report.Table(lines, made.ended(), effort.perturbation, quick)
+    table = report.Table(lines, Made.by(made_by_command()), effort.perturbation, quick)
     table.write(output)
     print(table.summary())
     return table.holds()
-
-
-def command(arguments: list[str]) -> str:
-    """What was typed, but for where the table goes."""
-    kept = [a for i, a in enumerate(arguments) if not a.startswith("--output") and arguments[i - 1 : i] != ["--output"]]
-    return " ".join(["python3 -m validation", *kept])
 
 
 def found_lines(chosen: list[Job], effort: Effort, records: Path, workers: int) -> Iterator[Line]:

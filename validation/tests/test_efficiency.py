@@ -42,7 +42,7 @@ def test_the_better_of_mitsubas_counts() -> None:
 
 def row_with(theirs: Ratio, best: Ratio) -> efficiency.Row:
     """A scene with these ratios."""
-    return efficiency.Row("pool", None, COST, ("mitsuba volpath", theirs), (1, 1), {"pt": best}, 0, [])
+    return efficiency.Row("pool", None, COST, ("mitsuba volpath", theirs), None, (1, 1), {"pt": best}, 0, [])
 
 
 def test_what_is_surely_better_is_said() -> None:

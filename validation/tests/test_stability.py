@@ -11,12 +11,13 @@ from validation.compare import options_of
 from validation.stability import report, run
 from validation.stability.case import Case, Sampled, mean
 from validation.stability.judge import Found, judge, level, refused
-from validation.stability.report import Line, Made, Table
+from validation.made import Made
+from validation.stability.report import Line, Table
 
 EFFORT = run.Effort(budget=10, cap=50)
 KIN = 20
 FOUND = Found(expected=1, found=1, error=1e-3, relative_error=1e-3, probability=0.5, freedom=15, not_finite=0, samples=100, seconds=1)
-MADE = Made("command", "tyndall 1", "abc", "2026-01-01", "a processor", 0.5, 0)
+MADE = Made("command", "tyndall 1", "abc", "0123456789ab", "2026-01-01", "a processor", 0.5, 0)
 
 
 def line(row: str = "row", flaw: str = "", **changes: Any) -> Line:
@@ -108,5 +109,5 @@ def test_every_line_of_the_table_has_a_name_of_its_own() -> None:
 
 
 def test_the_table_says_how_it_was_made() -> None:
-    text = Table([line()], Made.now("python3 -m validation stability").ended(), 0, False).markdown()
+    text = Table([line()], Made.by("python3 -m validation stability"), 0, False).markdown()
     assert all(part in text for part in ("tyndall ", "commit ", "load ", report.HOLDS))
