@@ -33,9 +33,9 @@ IN_CAVITY = (
     ((5, 25, 5), (0.500871, ALL), (0.713986, ALL)),
     ((5, 95, 5), (3.46846e-4, ("lt",)), (1.85082e-3, ("bdpt",))),
 )
-BY_DUCT = (((5, 95, 5), (0.0320574, ALL), (0.0544807, ALL)), ((55, 95, 5), (4.14132e-6, ("lt",)), (6.02771e-5, ())))
+BY_DUCT = (((5, 95, 5), (0.0320574, ALL), (0.0544807, ALL)), ((55, 95, 5), (4.14132e-6, ("lt",)), (6.02771e-5, ("bdpt",))))
 """Places, and by albedo, 0 and 0.5, the fluence there and who sees it. Light tracing does where nothing next to the lens scatters or
-shines. None resolves a tenth of the last in five minutes: `bdpt` would take ten."""
+shines. The last is not decided in its time: that would take twice as long."""
 
 
 def cases() -> list[Case]:

@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from itertools import groupby
@@ -31,6 +32,8 @@ class Line:
     kin: int
     """Lines of its kind in the whole table."""
     problem: str = ""
+    on: str = ""
+    """The processors by which it was rendered."""
 
     @property
     def resolution(self) -> float:
@@ -106,7 +109,8 @@ class Table:
         """What it took."""
         all_of_them = sum(line.found.seconds for line in self.lines if line.found)
         sharp = sum(line.found is not None and line.resolution <= aim(line) for line in self.lines)
-        return f"{sharp} of {len(self.lines)} lines resolve their aim. All lines took {all_of_them:.0f} s of one processor, {all_of_them / 120:.0f} minutes of two."
+        places = ", ".join(f"{count} on {on}" for on, count in Counter(line.on for line in self.lines).items())
+        return f"{sharp} of {len(self.lines)} lines resolve their aim. They took {all_of_them:.0f} s of one processor, {all_of_them / 120:.0f} minutes of two ({places})."
 
     def write(self, folder: Path) -> None:
         """stability.md and stability.json."""

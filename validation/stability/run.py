@@ -23,7 +23,7 @@ from tyndall.failure import Failure
 from tyndall.scene import Scene, changed
 from validation.compare import options_of
 from validation.files import made_by_command
-from validation.made import Made
+from validation.made import Made, processor
 from validation.stability import albedo, anisotropy, balls, boundaries, choices, contrast, fluence, grazing, index, lamps, overlaps, published, report, scale, thickness, trackers, voids, walks
 from validation.stability.case import AIM, LIGHT_AIM, Case
 from validation.stability.kept import binary
@@ -118,7 +118,7 @@ def found_lines(chosen: list[Job], effort: Effort, records: Path, workers: int) 
                 with records.open("a") as file:
                     file.write(json.dumps(record) + "\n")
             found = record["found"] and Found(**record["found"])
-            yield Line(job.case, job.method, found, job.kin, record["problem"])
+            yield Line(job.case, job.method, found, job.kin, record["problem"], record["on"])
 
 
 def key(job: Job, effort: Effort) -> str:
@@ -141,9 +141,9 @@ def render(number: int) -> dict:
     """One line, for the records."""
     chosen, effort = work
     try:
-        return {"found": asdict(line(chosen[number], effort)), "problem": ""}
+        return {"found": asdict(line(chosen[number], effort)), "problem": "", "on": processor()}
     except Failure as failure:
-        return {"found": None, "problem": str(failure)}
+        return {"found": None, "problem": str(failure), "on": processor()}
 
 
 def line(job: Job, effort: Effort) -> Found:
