@@ -20,8 +20,7 @@ use crate::{
     settings::Overrides,
     transport::{
         Algorithm, Connections, Effort, Guiding, Heuristic, Options, Sky, Strategies, equiangular_applies,
-        profiles::{Needs, ProfileName},
-        strategy::StrategyKind,
+        needs::Needs, profiles::ProfileName, strategy::StrategyKind,
     },
 };
 use clap::{Args, ValueEnum};

@@ -4,6 +4,7 @@ use super::{
     candidates,
     console::{Answer, say},
     estimator::Estimator,
+    fit::Fit,
     overview::Overview,
     parsers::positive_u32,
     picture,
@@ -83,7 +84,8 @@ pub(super) fn run(arguments: &Info) -> Result<()> {
     let plan = Plan::new(&setup, settings, chosen, None);
     let learnt = training::learn_for(&setup.scene, &setup.film, &settings).bytes();
     let overview = Overview::of(&setup);
-    say(&describe(&setup, &settings, &plan, &overview));
+    let fit = Fit::of(&setup, &settings);
+    say(&describe(&setup, &settings, &plan, &overview, &fit));
     if learnt > 0 {
         let later = if settings.options.effort.is_guided() {
             ", and more for later samples or small errors"
@@ -97,6 +99,7 @@ pub(super) fn run(arguments: &Info) -> Result<()> {
         ));
     }
     let mut figures = figures(&setup, &plan, learnt, overview.json());
+    figures["profile"] = fit.json();
     if let Some(report) = report.filter(|_| arguments.pilot) {
         say(&candidates::table(&report));
         figures["pilot"] = candidates::json(&report);
@@ -104,7 +107,7 @@ pub(super) fn run(arguments: &Info) -> Result<()> {
     arguments.answer.give(&figures)
 }
 
-fn describe(setup: &Setup, settings: &Settings, plan: &Plan, overview: &Overview) -> String {
+fn describe(setup: &Setup, settings: &Settings, plan: &Plan, overview: &Overview, fit: &Fit) -> String {
     let Setup { scene, film, integrator, samples_per_pixel, .. } = setup;
     let estimator = describe_integrator(plan.integrator, &settings.options, integrator.restriction);
     let mut lines = overview.lines();
@@ -128,9 +131,7 @@ fn describe(setup: &Setup, settings: &Settings, plan: &Plan, overview: &Overview
         .extend((1..=setup.medium_names.len()).map(|i| format!("medium      {}", describe_medium(setup, i))));
     lines.extend(describe_contacts(setup));
     lines.extend(overlapping(setup).map(|names| format!("overlap     {names}: coefficients add")));
-    let left_out = settings.profile.left_out();
-    let without = if left_out.is_empty() { "nothing".to_owned() } else { left_out.join(", ") };
-    lines.push(format!("profile     {}, leaving out: {without}", settings.profile.name()));
+    lines.push(format!("profile     {fit}"));
     lines.push(format!("plan        {}", plan.line()));
     lines.extend(plan.unreached());
     lines.join("\n")

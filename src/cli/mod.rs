@@ -11,6 +11,7 @@ pub mod diff;
 mod display;
 mod estimator;
 mod explain;
+mod fit;
 pub mod flights;
 mod guide;
 mod heading;

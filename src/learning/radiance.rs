@@ -17,8 +17,8 @@ use crate::{
     scene::Scene,
     transport::{
         Arrival, Contribution, Event, Leg, Options, Strategies,
+        needs::Needs,
         observer::{Meeting, Observer},
-        profiles::Needs,
         strategy::StrategyKind,
     },
 };

@@ -18,10 +18,7 @@ use crate::{
         pass::{Outcome, Pass},
     },
     scene::Scene,
-    transport::{
-        Interaction, Options,
-        profiles::{Needs, ProfileName},
-    },
+    transport::{Interaction, Options, needs::Needs, profiles::ProfileName},
 };
 use rayon::prelude::*;
 use std::{

@@ -47,10 +47,7 @@ mod tests {
         sampling::Sampler,
         scene::build,
         settings::Overrides,
-        transport::{
-            Options, Strategies,
-            profiles::{Needs, ProfileName},
-        },
+        transport::{Options, Strategies, needs::Needs, profiles::ProfileName},
     };
     use std::{
         path::Path,

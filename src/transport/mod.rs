@@ -75,6 +75,7 @@ mod interaction;
 pub mod lengths;
 mod light_path;
 mod mis;
+pub mod needs;
 pub mod observer;
 mod profile;
 pub mod profiles;

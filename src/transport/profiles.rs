@@ -4,13 +4,12 @@
 use super::{
     Heuristic,
     mis::{self, Balance, Compared, Cutoff, MisSums},
+    needs::{Need, Needs},
     profile::Profile,
 };
 use crate::{
-    bsdf::BsdfModel,
     math::{Channels, Spectrum},
-    medium::{MediaProfile, Medium},
-    scene::Scene,
+    medium::MediaProfile,
 };
 use std::marker::PhantomData;
 
@@ -120,43 +119,6 @@ pub type ByCutoff = Everything<Cutoff<Spectrum>>;
 /// [`Everything`] by the balance heuristic, with sums by kind of strategies, and with a guide once there is one.
 pub type ByKind = Guided<Everything<mis::ByKind<Spectrum>>>;
 
-/// What a scene needs of its profile.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Needs {
-    /// Some medium has extinction.
-    pub media: bool,
-    /// Some extinction differs between channels.
-    pub chromatic: bool,
-    /// Some medium's coefficients vary in space.
-    pub heterogeneous: bool,
-    /// Some surface lets rays pass undeflected, even if only those from the camera.
-    pub nulls: bool,
-    /// The rays of some emitter, at infinity or not, or those of the sensor are parallel.
-    pub infinite: bool,
-    /// Some medium emits light.
-    pub emissive: bool,
-    /// Some medium's extinction depends on the direction of flight.
-    pub flakes: bool,
-}
-
-impl Needs {
-    /// What `scene` needs; `hide_emitters` as in [`super::Options`].
-    pub fn of(scene: &Scene, hide_emitters: bool) -> Self {
-        let nulls = scene.surfaces.iter().any(|surface| scene.bsdfs[surface.bsdf as usize].has_null());
-        let overlap = scene.media_map.overlaps.is_some();
-        let passed = hide_emitters && scene.surfaces.iter().any(|surface| surface.emitter.is_some());
-        Self {
-            media: scene.media.iter().any(|medium| medium.bound().sigma_t != Spectrum::ZERO),
-            chromatic: scene.media.iter().any(Medium::is_chromatic),
-            heterogeneous: overlap || scene.media.iter().any(|medium| medium.heterogeneous().is_some()),
-            nulls: nulls || passed || overlap || scene.media_map.nowhere.is_some(),
-            infinite: scene.lights.has_parallel() || scene.sensor.is_parallel(),
-            emissive: scene.lights.has_media(),
-            flakes: scene.media.iter().any(Medium::depends_on_direction),
-        }
-    }
-}
-
 /// The profiles by name, for choice at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProfileName {
@@ -216,19 +178,19 @@ impl ProfileName {
         }
     }
 
-    /// What the profile leaves out, in words.
-    pub fn left_out(self) -> Vec<&'static str> {
-        fn of<P: Profile>() -> Vec<&'static str> {
-            let parts = [
-                (P::MEDIA, "media"),
-                (P::HETEROGENEOUS, "varying media"),
-                (P::Channels::COUNT > 1, "chromatic extinction"),
-                (P::NULLS, "index-matched boundaries"),
-                (P::INFINITE, "infinite emitters"),
-                (P::EMISSIVE, "emissive media"),
-                (P::FLAKES, "microflakes"),
-            ];
-            parts.iter().filter(|(present, _)| !present).map(|(_, what)| *what).collect()
+    /// What the profile leaves out.
+    pub fn left_out(self) -> Vec<Need> {
+        fn of<P: Profile>() -> Vec<Need> {
+            let has = |need: &Need| match need {
+                Need::Media => P::MEDIA,
+                Need::Heterogeneous => P::HETEROGENEOUS,
+                Need::Chromatic => P::Channels::COUNT > 1,
+                Need::Nulls => P::NULLS,
+                Need::Infinite => P::INFINITE,
+                Need::Emissive => P::EMISSIVE,
+                Need::Flakes => P::FLAKES,
+            };
+            Need::ALL.into_iter().filter(|need| !has(need)).collect()
         }
         match self {
             Self::Vacuum => of::<Vacuum>(),
@@ -261,16 +223,16 @@ mod tests {
                 flakes: has(6),
             };
             let left_out = ProfileName::leanest(needs).left_out();
-            for (needed, what) in [
-                (needs.media, "media"),
-                (needs.chromatic, "chromatic extinction"),
-                (needs.heterogeneous, "varying media"),
-                (needs.nulls, "index-matched boundaries"),
-                (needs.infinite, "infinite emitters"),
-                (needs.emissive, "emissive media"),
-                (needs.flakes, "microflakes"),
+            for (needed, need) in [
+                (needs.media, Need::Media),
+                (needs.chromatic, Need::Chromatic),
+                (needs.heterogeneous, Need::Heterogeneous),
+                (needs.nulls, Need::Nulls),
+                (needs.infinite, Need::Infinite),
+                (needs.emissive, Need::Emissive),
+                (needs.flakes, Need::Flakes),
             ] {
-                assert!(!(needed && left_out.contains(&what)), "{needs:?} lacks {what}");
+                assert!(!(needed && left_out.contains(&need)), "{needs:?} lacks {need:?}");
             }
         }
     }

@@ -8,10 +8,11 @@ use std::path::Path;
 use tyndall::{
     format,
     passes::{Settings, budget::Budget},
+    profiles::ProfileName,
     sampling::Sampler,
     scene::build::{self, Setup},
     settings::Overrides,
-    transport::profiles::{Needs, ProfileName},
+    transport::needs::Needs,
 };
 
 fn main() {

@@ -16,10 +16,7 @@ use tyndall::{
     sampling::Sampler,
     scene::build::{self, Setup},
     settings::Overrides,
-    transport::{
-        Options, Strategies,
-        profiles::{Needs, ProfileName},
-    },
+    transport::{Options, Strategies, needs::Needs, profiles::ProfileName},
 };
 
 /// A scene that is loaded and ready to be rendered again and again.

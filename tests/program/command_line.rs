@@ -409,7 +409,7 @@ fn info_tells_how_a_scene_would_be_rendered() {
         "size        2 x 2 x 2 m, from [-1, -1, -1] to [1, 1, 1]\ncamera      in fog, at [0, 0, 0.9]\nfree path   fog: 1 m\nthickness   1.",
         "8 x 8",
         "bdpt",
-        "profile     fog, leaving out",
+        "profile     fog: ",
         "fog: homogeneous",
         "closed-form tracker",
         "camera      in fog",

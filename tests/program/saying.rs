@@ -93,6 +93,89 @@ fn what_a_pilot_chooses_is_said() {
     assert!(picture.contains("\"survival\":\"albedo\""), "{picture}");
 }
 
+/// A cloud and two balls of fog before a sky, one of them red.
+fn balls_before_a_sky(extinction: Value) -> Value {
+    let ramp = json!({"type": "exponential", "value": 1.0});
+    scene(&[
+        ("sensor", camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 4)),
+        ("cloud", json!({"type": "heterogeneous", "sigma_t": ramp, "albedo": 0.5})),
+        ("fog", with(medium(1.0, 0.8, 0.3), &[("sigma_t", extinction)])),
+        ("box", null_box([-1.0; 3], [1.0; 3], Some(named("cloud")))),
+        ("left", null_ball([-3.0, 0.0, 0.0], 0.5, named("fog"))),
+        ("right", null_ball([3.0, 0.0, 0.0], 0.5, named("fog"))),
+        ("sky", sky(1.0)),
+    ])
+}
+
+#[test]
+fn info_says_why_a_profile_is_taken() {
+    let told = |scene: &Value, words: &str| {
+        let said = Sandbox::with_scene(scene).run(&format!("info scene.json {words}")).ends(0).out();
+        said.lines().find_map(|line| line.strip_prefix("profile     ")).map(str::to_owned).unwrap()
+    };
+    let fog = "the medium \"fog\" has extinction";
+    let open =
+        "the shape \"box\" and 2 more let rays pass undeflected, the emitter \"constant\" has parallel rays";
+    let grey = balls_before_a_sky(json!(1.0));
+    let red = balls_before_a_sky(json!({"type": "rgb", "value": [1.0, 0.5, 0.5]}));
+    for (scene, words, expected) in [
+        (
+            &foggy_room(),
+            "",
+            format!(
+                "fog: {fog}; leaves out varying media, chromatic extinction, index-matched boundaries, infinite emitters, emissive media, microflakes"
+            ),
+        ),
+        (
+            &foggy_room(),
+            "--hide-emitters",
+            format!(
+                "bounded: {fog}, the hidden emitter \"lamp\" lets rays pass undeflected; leaves out varying media, chromatic extinction, emissive media, microflakes"
+            ),
+        ),
+        (
+            &foggy_room(),
+            "--profile everything",
+            format!("everything, forced by --profile; fitted would be fog: {fog}; leaves out nothing"),
+        ),
+        (
+            &foggy_room(),
+            "--heuristic power",
+            format!("everything, for the power heuristic; fitted would be fog: {fog}; leaves out nothing"),
+        ),
+        (
+            &grey,
+            "",
+            format!(
+                "smoke: the medium \"cloud\" varies in space, {open}; leaves out chromatic extinction, emissive media, microflakes"
+            ),
+        ),
+        (
+            &red,
+            "--heuristic power",
+            format!(
+                "everything: the medium \"cloud\" varies in space, the medium \"fog\" has chromatic extinction, {open}; leaves out nothing"
+            ),
+        ),
+    ] {
+        assert_eq!(told(scene, words), expected, "{words}");
+    }
+    let lamp =
+        scene(&[("sensor", camera([0.0, 0.0, 0.9], [0.0, 0.0, -1.0], 8)), ("lamp", point([0.0; 3], 1.0))]);
+    assert!(told(&lamp, "").starts_with("vacuum; leaves out media, varying media, "));
+    let figures =
+        parsed(&Sandbox::with_scene(&grey).run("info scene.json --json --profile everything").ends(0));
+    let need = |need, first, count: u32| json!({"need": need, "first": first, "count": count});
+    let needs = [
+        need("media", "the medium \"cloud\"", 2),
+        need("varying media", "the medium \"cloud\"", 1),
+        need("index-matched boundaries", "the shape \"box\"", 3),
+        need("infinite emitters", "the emitter \"constant\"", 1),
+    ];
+    let expected = json!({"name": "everything", "forced": "forced by --profile", "fitted": "smoke", "needs": needs, "leaves_out": []});
+    assert_eq!(figures["profile"], expected);
+}
+
 #[test]
 fn free_flights_are_named_by_their_methods() {
     let ramp = json!({"type": "exponential", "value": 1.0});

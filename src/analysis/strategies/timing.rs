@@ -204,10 +204,7 @@ mod tests {
         sampling::Sampler,
         scene::{accel::RAYS, build},
         settings::Overrides,
-        transport::{
-            Options, Strategies,
-            profiles::{Needs, ProfileName},
-        },
+        transport::{Options, Strategies, needs::Needs, profiles::ProfileName},
     };
     use std::path::Path;
 
