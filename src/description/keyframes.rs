@@ -1,10 +1,13 @@
 //! Values that change in time (BMA02 sec. 5): what they are at a few times, and how those between follow.
 
+mod matrices;
+
 use super::{
     object::{Location, Property, Value},
     transform::TransformStep,
 };
 use crate::error::{Error, Result};
+use matrices::Parts;
 
 /// A value at several times. Before the first and after the last of them, theirs hold.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,13 +57,16 @@ impl Keyframes {
         let Some(Key { value: first, .. }) = keys.first() else {
             return Err(Error::new(location, "one or more keys", "none", "add a time and a value"));
         };
-        if numbers(&first.value).is_empty() {
+        if numbers(&first.value).is_empty() && matrices::of(&first.value).next().is_none() {
             let expected = "a value of numbers, which can change in time";
             let remedy = "give a number, a colour, a vector, a transform, or numbers in a string";
             return Err(Error::new(&first.location, expected, first.value.describe(), remedy));
         }
         for pair in keys.windows(2) {
             check(&pair[0], &pair[1])?;
+        }
+        if keys.len() > 1 {
+            keys.iter().try_for_each(|key| matrices::check(&key.value, first))?;
         }
         Ok(Self { interpolation, keys })
     }
@@ -99,7 +105,21 @@ impl Keyframes {
             *number = of(&Curve { interpolation: self.interpolation, times: &times, values });
             index += 1;
         });
+        for (index, rows) in matrices::of_mut(&mut value).enumerate() {
+            *rows = self.matrix(&times, index, &of);
+        }
         value
+    }
+
+    /// Matrix number `index` of the value, likewise; one that is the same in all keys stays as it is.
+    fn matrix(&self, times: &[f64], index: usize, of: &impl Fn(&Curve) -> f64) -> [f64; 16] {
+        let rows = |key: &Key| matrices::of(&key.value.value).nth(index).copied();
+        let given: Vec<[f64; 16]> = self.keys.iter().filter_map(rows).collect();
+        if given.iter().all(|rows| *rows == given[0]) {
+            return given[0];
+        }
+        let all: Vec<Parts> = given.iter().filter_map(Parts::of).collect();
+        Parts::mixed(&all, |values| of(&Curve { interpolation: self.interpolation, times, values })).rows()
     }
 }
 
@@ -115,6 +135,7 @@ fn check(first: &Key, second: &Key) -> Result<()> {
     let form = |key: &Key| {
         let mut value = floating(&key.value.value);
         visit(&mut value, &mut |number| *number = 0.0);
+        matrices::of_mut(&mut value).for_each(|rows| *rows = [0.0; 16]);
         value
     };
     if form(first) == form(second) {
@@ -127,7 +148,7 @@ fn check(first: &Key, second: &Key) -> Result<()> {
     let of_form = |key: &Key| format!("{} of {}", key.value.value.describe(), count(key));
     let expected = format!("a value in the form of the key before it, {}", of_form(first));
     let remedy = "give every key the same kind of value: as many numbers, the same steps of a transform in the \
-                  same order, no matrices, the same wavelengths";
+                  same order, the same wavelengths";
     Err(Error::new(place, expected, of_form(second), remedy))
 }
 
@@ -146,8 +167,7 @@ fn numbers(value: &Value) -> Vec<f64> {
     all
 }
 
-/// Shows `change` every number of a value that can change, in order. Between two matrices there is none that a user
-/// would expect, and wavelengths stay.
+/// Shows `change` every number of a value that can change by itself, in order: those of a matrix cannot, and wavelengths stay.
 fn visit(value: &mut Value, change: &mut dyn FnMut(&mut f64)) {
     match value {
         Value::Float(x) => change(x),

@@ -29,7 +29,7 @@ pub use axes::axes;
 pub use bounds::Bounds;
 pub use channels::Channels;
 pub use frame::Frame;
-pub use glam::{Affine3A, DAffine3, DMat3, DMat4, DVec3, Mat3, Vec2, Vec3, vec2, vec3};
+pub use glam::{Affine3A, DAffine3, DMat3, DMat4, DQuat, DVec3, Mat3, Vec2, Vec3, vec2, vec3};
 pub use ray_segment::RaySegment;
 pub use spectrum::{Spectrum, SpectrumExt};
 pub use uv::{Attribute, Corners, Detail, Uv};

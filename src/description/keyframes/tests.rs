@@ -1,5 +1,5 @@
 use super::*;
-use crate::testing::nowhere;
+use crate::{description::transform::compose, math::DMat4, testing::nowhere};
 
 fn keyframes(interpolation: Interpolation, keys: &[(f64, Value)]) -> Result<Keyframes> {
     let key = |(time, value): &(f64, Value)| {
@@ -102,8 +102,12 @@ fn keys_out_of_order_and_values_that_cannot_change_are_refused() {
     let float = Value::Float;
     let linear = |keys: &[(f64, Value)]| keyframes(Interpolation::Linear, keys);
     assert!(linear(&[(3.0, float(1.0))]).is_ok());
-    let matrix = |x: f64| Value::Transform(vec![TransformStep::Matrix([x; 16])]);
-    let refused: [&[(f64, Value)]; 9] = [
+    let matrix = |diagonal: [f64; 4]| {
+        let rows = DMat4::from_diagonal(diagonal.into()).to_cols_array();
+        Value::Transform(vec![TransformStep::Matrix(rows)])
+    };
+    let usual = matrix([1.0; 4]);
+    let refused: [&[(f64, Value)]; 11] = [
         &[],
         &[(0.0, Value::Boolean(true))],
         &[(0.0, Value::String("water.vdb".into()))],
@@ -112,9 +116,49 @@ fn keys_out_of_order_and_values_that_cannot_change_are_refused() {
         &[(0.0, float(1.0)), (f64::NAN, float(2.0))],
         &[(0.0, float(1.0)), (1.0, Value::Rgb([1.0; 3]))],
         &[(0.0, Value::String("1, 2".into())), (1.0, Value::String("1, 2, 3".into()))],
-        &[(0.0, matrix(1.0)), (1.0, matrix(2.0))],
+        &[(0.0, usual.clone()), (1.0, matrix([1.0, 0.0, 1.0, 1.0]))],
+        &[(0.0, usual.clone()), (1.0, matrix([1.0, 1.0, 1.0, 2.0]))],
+        &[(0.0, usual), (1.0, matrix([-1.0, 1.0, 1.0, 1.0]))],
     ];
     for keys in refused {
         assert!(linear(keys).is_err(), "{keys:?}");
     }
+}
+
+/// The matrix that `steps` make.
+fn as_matrix(steps: &[TransformStep]) -> Value {
+    Value::Transform(vec![TransformStep::Matrix(compose(steps).transpose().to_cols_array())])
+}
+
+fn composed(value: &Value) -> DMat4 {
+    let Value::Transform(steps) = value else { panic!("no transform") };
+    compose(steps)
+}
+
+#[test]
+fn between_matrices_things_turn_and_stretch_as_by_steps() {
+    let steps = |x: f64, angle: f64, size: f64| {
+        let turn = TransformStep::Rotate { axis: [1.0, -2.0, 0.5], angle };
+        [TransformStep::Scale([size, -1.0, 0.01]), turn, TransformStep::Translate([x, 1e3, 2.0])]
+    };
+    let keys =
+        [(0.0, 0.0, 10.0, 2.0), (1.0, 3.0, 170.0, 2.5), (3.0, 3.0, 170.0, 2.5), (4.0, -2.0, 20.0, 1e-3)];
+    for interpolation in BOTH {
+        let by = |of: &dyn Fn(&[TransformStep]) -> Value| {
+            let keys = keys.map(|(time, x, angle, size)| (time, of(&steps(x, angle, size))));
+            keyframes(interpolation, &keys).unwrap()
+        };
+        let (by_steps, by_matrices) = (by(&|steps| Value::Transform(steps.to_vec())), by(&as_matrix));
+        for time in [-1.0, 0.0, 0.2, 0.5, 1.0, 1.7, 3.0, 3.3, 3.9, 4.0, 9.0] {
+            let (a, b) = (composed(&by_steps.at(time)), composed(&by_matrices.at(time)));
+            assert!(a.abs_diff_eq(b, 1e-9), "{interpolation:?} at {time} s: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn a_matrix_that_stays_keeps_its_bits() {
+    let value = as_matrix(&[TransformStep::Rotate { axis: [1.0, 2.0, 3.0], angle: 77.0 }]);
+    let keyframes = keyframes(Interpolation::Linear, &[(0.0, value.clone()), (1.0, value.clone())]).unwrap();
+    assert_eq!(keyframes.at(0.3), value);
 }
