@@ -7,7 +7,7 @@ from pathlib import Path
 from tyndall.failure import Failure
 from tyndall.scene import open_scene
 from tyndall import judging
-from validation import assets, bias, cells, compare, comparison_page, coverage, efficiency, full, gallery, growth, instructions, lottery
+from validation import assets, bias, cells, compare, comparison_page, coverage, efficiency, full, gallery, growth, instructions, intervals, lottery
 from validation import matrix, package_tests, page, progressive, rays, reach, record, references, selftest, thresholds, truths
 from validation.cluster import cli as cluster
 from validation.compare import Effort
@@ -23,6 +23,7 @@ MEASURES = {
     "progressive": (progressive, "Progressive pictures against as many pixels on a regular grid, on four scenes."),
     "thresholds": (thresholds, "P03T's tests A-F at its own thresholds: time with a guide and without, learning included."),
     "record": (record, "Renews the reports that are out of date, and the tables that pages take from them."),
+    "intervals": (intervals, "Whether printed intervals hold the truth as often as they say, and whether printed noise is the image's."),
     "lottery": (lottery, "The default choice of strategies against others, in scenes that nobody made."),
 }
 """Commands whose modules know their options."""

@@ -27,6 +27,7 @@ OURS = "tyndall"
 """The contender that the others are compared with."""
 BDPT = "--integrator bdpt"
 NOBODY = "nobody"
+ALONE = ("--contender", f"{NOBODY}: --integrator fog")
 """A study without a --contender would add two in its own process. A preview, which it leaves out, keeps them away."""
 
 
@@ -133,7 +134,7 @@ def measured(
 ) -> Study:  # fmt: skip
     """All contenders in all scenes, against references that are given or else kept, rendered `by` these options. Contenders are named
     with their options; Mitsuba's have none."""
-    everybody = ["--contender", f"{NOBODY}: --integrator fog", *(word for name, words in contenders.items() for word in command(name, words))]
+    everybody = [*ALONE, *(word for name, words in contenders.items() for word in command(name, words))]
     much: dict[str, program.Option] = {"seconds": effort.seconds, "seeds": effort.seeds, "seed": effort.first, "doublings": effort.points, "restart": restart, "quiet": quiet}
     references = references or [reference(scene, effort, by) for scene in scenes]
     known = [word for one in references for word in ("--reference", one.image)]
