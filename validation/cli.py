@@ -162,8 +162,14 @@ def run_closed_forms(options: argparse.Namespace) -> bool:
 
 
 def add_recorded(commands: Commands) -> None:
-    command = add(commands, "instructions", lambda options: instructions.run(options.record), "Instructions per sample of three scenes, by valgrind, against those recorded.")
+    command = add(commands, "instructions", run_instructions, "Instructions per sample of three scenes, by valgrind, against those recorded.")
     command.add_argument("--record", action="store_true", help="record them anew")
+    command.add_argument("--table", action="store_true", help="instead, what profiles save in scenes that need little: instructions.md")
+    command.add_argument("--output", type=Path, help="folder for instructions.md (default: validation/reports)")
+
+
+def run_instructions(options: argparse.Namespace) -> bool:
+    return instructions.table(options.output) if options.table else instructions.run(options.record)
 
 
 def add_page(commands: Commands) -> None:

@@ -1,15 +1,22 @@
-"""Instructions per sample of three scenes, counted by valgrind: a cost that needs no clock. The counts of vertices, connections
-and rays are held by a test (src/analysis/strategies/timing.rs); instructions depend on the compiler, so they are recorded here."""
+"""Instructions per sample, counted by valgrind: a cost that needs no clock. Of three scenes they are recorded: the counts of vertices,
+connections and rays are held by a test (src/analysis/strategies/timing.rs), instructions depend on the compiler. A table shows what
+it saves to leave out of the program what a scene does not need."""
 
 import json
 import re
 import shutil
 import tempfile
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import tyndall
 from tyndall import program
-from tyndall.scene import as_scene, scene_file
+from tyndall.failure import Failure
+from tyndall.scene import Scene, as_scene, derived, open_scene, scene_file
+from validation.files import write_report
 from validation.places import CROSSCHECK, EFFICIENCY, REPORTS, ROOT, SCENES
 
 GUARDED = (SCENES / "lampbox_up.xml", EFFICIENCY / "glass_fog_sky.xml", CROSSCHECK / "grid_sparse.json")
@@ -19,6 +26,12 @@ SAMPLES = (2, 6)
 """Per pixel, of two renders: their difference leaves out starting and loading."""
 KEPT = 0.02
 """By what part a count may differ from the recorded one."""
+WAYS: dict[str, dict[str, Any]] = {
+    "pt": {"integrator": "pt"},
+    "lt": {"integrator": "lt"},
+    "bdpt": {"integrator": "bdpt"},
+    "bdpt, guided": {"integrator": "bdpt", "guide": "always"},
+}
 
 
 def run(record: bool) -> bool:
@@ -61,3 +74,69 @@ def collected(text: str) -> int:
     """What valgrind says it counted."""
     [count] = re.findall(r"Collected : (\d+)", text)
     return int(count)
+
+
+def scenes() -> list[Scene]:
+    """One for each profile, in order."""
+    smoke = open_scene(CROSSCHECK / "grid_sparse.json")
+    few = (CROSSCHECK / "vacuum_room.json", SCENES / "lampbox_up.xml", EFFICIENCY / "glass_fog_sky.xml")
+    fire = replace(derived(smoke, lambda o: {**o, "radiance": 1.0} if o["type"] == "heterogeneous" else o), name="grid_sparse, glowing")
+    coloured = (EFFICIENCY / "chromatic_fog.xml", EFFICIENCY / "pool.xml")
+    return [*map(open_scene, few), smoke, fire, *map(open_scene, coloured)]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """Instructions per sample of a scene, by a profile that has what it needs and by the one that has everything."""
+
+    profile: str
+    scene: str
+    way: str
+    fitted: float
+    everything: float
+
+    @property
+    def saved(self) -> float:
+        return 1 - self.fitted / self.everything
+
+
+def table(output: Path | None, workers: int = 2) -> bool:
+    """Counts, and writes instructions.md."""
+    if shutil.which("valgrind") is None:
+        raise Failure("valgrind was not found", "apt install valgrind")
+    with ThreadPoolExecutor(workers) as pool:
+        cells = list(pool.map(lambda asked: cell(*asked), [(scene, way) for scene in scenes() for way in WAYS]))
+    write_report("instructions", "What a scene does not need costs nothing", page(cells), None, output or REPORTS)
+    return True
+
+
+def cell(scene: Scene, way: str) -> Cell:
+    """One of the table."""
+    fitted, everything = (per_sample(scene, profile=profile, **WAYS[way]) for profile in ("fitted", "everything"))
+    return Cell(profile_of(scene), scene.name, way, fitted, everything)
+
+
+def profile_of(scene: Scene) -> str:
+    """What `tyndall info` names."""
+    with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
+        told = program.call([str(program.binary()), "info", str(scene_file(scene, Path(folder))), "--json"]).stdout
+    return json.loads(told)["profile"]["name"]
+
+
+def page(cells: list[Cell]) -> str:
+    """The report."""
+    return "\n".join([
+        f"Instructions per sample, in thousands, by callgrind: {SIDE} x {SIDE} pixels, {SAMPLES[1]} samples a pixel less {SAMPLES[0]}, so that starting, loading and learning are "
+        "left out. Estimators are compiled for profiles, which leave out parts that a scene may not need; `fitted` is the one that `tyndall info` names, "
+        "`everything` is `--profile everything`. Under a guide several profiles share one (src/passes/compiled.rs).\n",
+        f"| profile | scene | {' | '.join(WAYS)} |", f"|---|---|{'---|' * len(WAYS)}",
+        *rows(cells), "",
+    ])  # fmt: skip
+
+
+def rows(cells: list[Cell]) -> Iterator[str]:
+    """A line for each scene: fitted, everything, and what part is saved."""
+    for scene in dict.fromkeys(one.scene for one in cells):
+        those = [one for one in cells if one.scene == scene]
+        told = " | ".join(f"{one.fitted / 1000:.1f} of {one.everything / 1000:.1f}: {100 * one.saved:.1f} %" for one in those)
+        yield f"| `{those[0].profile}` | {scene} | {told} |"

@@ -26,3 +26,13 @@ def test_counts_are_held(count: float, holds: bool, tmp_path: Path, monkeypatch:
 def test_without_valgrind_nothing_fails(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr("shutil.which", lambda _: None)
     assert instructions.run(record=False) and "valgrind was not found" in capsys.readouterr().out
+
+
+def test_the_table_has_a_scene_for_every_profile() -> None:
+    profiles = list(map(instructions.profile_of, instructions.scenes()))
+    assert profiles == ["vacuum", "fog", "bounded", "smoke", "fire", "chromatic-fog", "chromatic-bounded"]
+
+
+def test_a_line_tells_what_part_is_saved() -> None:
+    cells = [instructions.Cell("fog", "a", way, fitted, 2000.0) for way, fitted in (("pt", 1500.0), ("bdpt", 2000.0))]
+    assert list(instructions.rows(cells)) == ["| `fog` | a | 1.5 of 2.0: 25.0 % | 2.0 of 2.0: 0.0 % |"]
