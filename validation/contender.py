@@ -4,11 +4,12 @@
         --integrator volpath --variant llvm_ad_rgb --seed {seed} --spp {budgets} --folder {folder} --size {size} --threads {threads}"
 
 Writes an image for each number of samples, each going on from the one before, and reports on a line for each the seconds of
-rendering, and those of starting, loading and compiling. With `--tyndall OPTIONS` it is `tyndall render` by these, a process for
+rendering, their processor time, and the seconds of starting, loading and compiling. With `--tyndall OPTIONS` it is `tyndall render` by these, a process for
 each image: what that learns, and its pilot, are among the seconds."""
 
 import argparse
 import json
+import os
 import shlex
 import sys
 import time
@@ -75,7 +76,8 @@ def ours(options: argparse.Namespace) -> None:
         given = program.flags({"output": image, "report": report, "spp": spp, "seed": options.seed, "size": size, "threads": options.threads})
         program.call([str(program.binary()), "--quiet", "render", str(options.scene), *definitions, *given, *shlex.split(options.tyndall)])
         told = json.loads(report.read_text())
-        print(json.dumps({"spp": spp, "seconds": told["render_seconds"], "load_seconds": told["load_seconds"]}), flush=True)
+        times = {"seconds": told["render_seconds"], "cpu_seconds": told["cpu_seconds"], "load_seconds": told["load_seconds"]}
+        print(json.dumps({"spp": spp, **times, "plan": told["plan"]["words"]}), flush=True)
 
 
 def render(loaded: Any, integrator: Any, options: argparse.Namespace) -> None:
@@ -90,17 +92,24 @@ def render(loaded: Any, integrator: Any, options: argparse.Namespace) -> None:
     width, height = loaded.sensors()[0].film().crop_size()
     wavefront = WAVEFRONT.get(options.variant)
     most = max(1, wavefront // (int(width) * int(height))) if wavefront else max(options.spp)
-    total, done, passes, seconds = np.zeros((int(height), int(width), 3)), 0, 0, 0.0
+    total, done, passes, seconds, cpu_seconds = np.zeros((int(height), int(width), 3)), 0, 0, 0.0, 0.0
     for spp in options.spp:
-        start = time.perf_counter()
+        start, cpu_start = time.perf_counter(), processor_time()
         while done < spp:
             part = min(most, spp - done)
             total += part * mitsuba.image(loaded, part, seed_of(options.seed, passes), integrator)
             done, passes = done + part, passes + 1
         dr.sync_thread()
         seconds += time.perf_counter() - start
+        cpu_seconds += processor_time() - cpu_start
         exr.write_image(options.folder / f"{spp}.exr", total / done)
-        print(json.dumps({"spp": spp, "seconds": seconds, "load_seconds": load_seconds}), flush=True)
+        print(json.dumps({"spp": spp, "seconds": seconds, "cpu_seconds": cpu_seconds, "load_seconds": load_seconds}), flush=True)
+
+
+def processor_time() -> float:
+    """Of all threads of this process and of the children that have ended, user and system (s)."""
+    times = os.times()
+    return time.process_time() + times.children_user + times.children_system
 
 
 def seed_of(seed: int, number: int) -> int:

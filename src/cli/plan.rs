@@ -56,19 +56,34 @@ impl Plan {
 
     /// In one line: integrator and strategies, sampler, free flights, size, limits, profile.
     pub(super) fn line(&self) -> String {
+        let [width, height] = self.size;
+        let mut parts = self.manner();
+        parts.extend([format!("{width}x{height}"), self.limits()]);
+        parts.extend(self.bias());
+        parts.push(self.profile());
+        parts.join(", ")
+    }
+
+    /// The same without size and limits: what is equal at all budgets.
+    pub(super) fn words(&self) -> String {
+        [self.manner(), vec![self.profile()]].concat().join(", ")
+    }
+
+    fn profile(&self) -> String {
+        format!("profile {}", self.settings.profile.name())
+    }
+
+    /// How paths are made.
+    fn manner(&self) -> Vec<String> {
         let integrator = match self.strategies.as_slice() {
             [] => format!("{}, a preview of first surfaces", self.integrator),
             strategies => format!("{} ({}{})", self.integrator, strategies.join(", "), self.effort()),
         };
-        let [width, height] = self.size;
         let mut parts = vec![integrator, format!("{} samples", self.settings.sampler.name())];
         if !self.flights.is_empty() {
             parts.push(list(&self.flights.iter().map(|method| in_words(*method)).collect::<Vec<_>>()));
         }
-        parts.extend([format!("{width}x{height}"), self.limits()]);
-        parts.extend(self.bias());
-        parts.push(format!("profile {}", self.settings.profile.name()));
-        parts.join(", ")
+        parts
     }
 
     /// What a progressive picture is.
@@ -144,6 +159,7 @@ impl Plan {
         let Options { effort, connections, .. } = options;
         let unreached = self.unreached.iter();
         let mut all = json!({
+            "words": self.words(),
             "integrator": self.integrator,
             "strategies": self.strategies,
             "survival": effort.survival.name(),

@@ -5,12 +5,13 @@ use super::{
     contenders, media,
     outputs::NUMBERS,
     parsers::{Size, confidence, definition, duration, positive_u32, size, threads as threads_of},
+    plan::Plan,
     provenance,
     scene::threads,
 };
 use crate::{
     analysis::study::{
-        contender::{Contender, Entry, How, Renderer},
+        contender::{Contender, Entry, Head, How, Renderer},
         external::{self, External},
         page,
         question::{Effort, Question, ReferenceFile, SceneQuestion, Wanted},
@@ -67,7 +68,8 @@ pub struct Study {
     /// It is run for each budget, or for each seed with {budgets} (such as 16,32,64) and {folder} (where to write 16.exr,
     /// 32.exr, 64.exr) in place of {spp} and {out}. Further placeholders: {definitions} (-D name=value for each parameter),
     /// {size}, {width}, {height}, {threads}. It reports the seconds of rendering, without starting, loading and compiling,
-    /// on a line for each image: {"spp": 16, "seconds": 1.5, "load_seconds": 0.2}. validation/contender.py is one.
+    /// on a line for each image: {"spp": 16, "seconds": 1.5, "load_seconds": 0.2}. It may add "cpu_seconds", and "plan", a line
+    /// of text that says what it does. validation/contender.py is one.
     #[arg(long = "external", value_name = "NAME: COMMAND", allow_hyphen_values = true)]
     pub externals: Vec<String>,
 
@@ -345,17 +347,20 @@ impl<'a> Stage<'a> {
         let requested = contenders::parse("contender", words)?;
         let overrides = requested.overrides(self.arguments.size);
         let (setup, load_seconds) = self.setup(scene, overrides)?;
-        let started = Instant::now();
-        let settings = requested.settings(&setup, 0, Budget::ENDLESS)?;
-        let budget = Budget { spent: started.elapsed(), ..settings.budget };
-        let settings = Settings { budget, ..settings };
+        let (settings, head) = Head::of(&setup.scene, || {
+            let started = Instant::now();
+            let (settings, chosen) = requested.chosen(&setup, 0, Budget::ENDLESS)?;
+            let budget = Budget { spent: started.elapsed(), ..settings.budget };
+            let settings = Settings { budget, ..settings };
+            Ok((settings, Plan::new(&setup, settings, chosen, None).words()))
+        })?;
         if settings.options.algorithm == Algorithm::Fog {
             let (expected, found) = ("an integrator that estimates radiance", "fog, which is a preview");
             return Err(Error::new("--integrator", expected, found, "choose bdpt, pt or lt"));
         }
         // The name of a contender that is no other promises a difference that does not exist.
         let notes = media::idle(&overrides, &setup.scene).into_iter().collect();
-        Ok(Entry { setup, renderer: Renderer::Own { settings, load_seconds }, notes })
+        Ok(Entry { setup, renderer: Renderer::Own { settings, load_seconds, head }, notes })
     }
 }
 

@@ -11,6 +11,10 @@ pub struct Memo(Mutex<Known>);
 
 type Known = Option<(String, Arc<dyn Any + Send + Sync>)>;
 
+/// What a memo kept at some time; by default nothing.
+#[derive(Clone, Debug, Default)]
+pub struct Kept(Known);
+
 impl Clone for Memo {
     /// Forgets: the scene may be changed.
     fn clone(&self) -> Self {
@@ -40,6 +44,16 @@ impl Memo {
     /// From now on, `learnt` is what there is for `key`.
     pub fn keep<T: Send + Sync + 'static>(&self, key: String, learnt: T) {
         *self.lock() = Some((key, Arc::new(learnt)));
+    }
+
+    /// What is kept now, to be [put back](Self::put_back).
+    pub fn kept(&self) -> Kept {
+        Kept(self.lock().clone())
+    }
+
+    /// Forgets all but what was `kept` then.
+    pub fn put_back(&self, kept: &Kept) {
+        *self.lock() = kept.0.clone();
     }
 
     fn lock(&self) -> MutexGuard<'_, Known> {

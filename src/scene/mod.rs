@@ -29,7 +29,7 @@ use crate::{
 use accel::Geometry;
 use lights::Lights;
 use media::MediaMap;
-pub use memo::Memo;
+pub use memo::{Kept, Memo};
 pub(crate) use sections::TABLE;
 pub use surface::Surface;
 

@@ -3,7 +3,9 @@
 use std::path::Path;
 use tempfile::TempDir;
 use tyndall::{
-    analysis::study::outcome::{ContenderOutcome, Interval, Outcome, Point, Reference, SceneOutcome},
+    analysis::study::outcome::{
+        Apart, Chosen, Conditions, ContenderOutcome, Interval, Outcome, Point, Reference, SceneOutcome,
+    },
     film::{exr, format::Format},
     math::{Spectrum, vec3},
 };
@@ -29,6 +31,11 @@ impl Study {
             made_by: "tyndall 0.0.0".into(),
             command: "tyndall study room.json --seeds 4".into(),
             machine: "a machine, 2 threads".into(),
+            conditions: Some(Conditions {
+                started: "2026-11-27 13:20 UTC".into(),
+                load_before: Some([0.5, 0.25, 0.125]),
+                load_after: Some([2.0, 1.0, 0.5]),
+            }),
             confidence: 0.95,
             scenes: scenes.collect(),
         };
@@ -95,6 +102,9 @@ fn scene(index: usize, name: &str, contenders: &[&str], budgets: usize) -> Scene
             image: format!("images/{index}/reference.exr").into(),
             how: "bdpt, 4096 samples per pixel".into(),
             own_relmse: Some(1e-5),
+            known_by: Some("how far its 16 independent batches are apart".into()),
+            apart: None,
+            like: vec!["bdpt".into()],
         },
         contenders: contenders
             .map(|(series, name)| contender(&format!("images/{index}/{series}"), series, name, budgets))
@@ -109,6 +119,7 @@ fn contender(folder: &str, series: usize, name: &str, budgets: usize) -> Contend
     let point = |budget: usize| Point {
         samples: 4 << budget,
         seconds: about(0.5 * f64::from(1u32 << budget)),
+        cpu_seconds: (series != 2).then(|| about(0.9 * f64::from(1u32 << budget))),
         mse: about(2.0 * error(budget)),
         relmse: about(error(budget)),
         trimmed_relmse: about(0.7 * error(budget)),
@@ -123,6 +134,8 @@ fn contender(folder: &str, series: usize, name: &str, budgets: usize) -> Contend
         points: (0..budgets).map(point).collect(),
         slope: (budgets > 2).then_some(Interval { mean: -1.0, low: -1.1, high: -0.9 }),
         efficiency: about(1.0 / (0.05 * (1.0 + series as f64))),
+        chosen: (series == 0).then(|| Chosen { what: "bdpt (hit, join)".into(), otherwise: 1, seeds: 4 }),
+        apart: Some(Apart { errors: [0.5, -1.5, 12.0][series % 3], limit: 5.0 }),
         variance: format!("{folder}/variance.exr").into(),
         ratio: (series > 0).then(|| about(1.0 / (1.0 + series as f64))),
         notes: Vec::new(),

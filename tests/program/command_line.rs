@@ -397,6 +397,8 @@ fn a_time_limit_is_kept() {
     assert!(figures["samples_per_pixel"].as_u64().unwrap() > 4, "{figures}");
     let seconds = figures["render_seconds"].as_f64().unwrap();
     assert!((0.9..1.5).contains(&seconds), "{figures}");
+    let cpu = figures["cpu_seconds"].as_f64().unwrap();
+    assert!(cpu > 0.05, "{figures}");
     // Samples end it first where they are fewer.
     sandbox.run("render scene.json --time-limit 1h --spp 2").ends(0);
 }

@@ -34,19 +34,76 @@ fn everything_of_a_study_is_on_its_page() {
     assert_eq!(texts(&html, ".scene h2"), ["room", "church"]);
     assert_eq!(texts(&html, "#scene-1 .legend button"), ["bdpt", "pt", "volpath"]);
     assert_eq!(texts(&html, "#scene-0 .strip h4").len(), 4);
-    // Five measures over two axes, one shown at first; a mark for every budget.
-    assert_eq!(all(&html, "#scene-0 .chart").len(), 10);
+    // Five measures over three axes, one shown at first; a mark for every budget.
+    assert_eq!(all(&html, "#scene-0 .chart").len(), 15);
     assert_eq!(shown(&html, "#scene-0 .chart").len(), 1);
     let marks = shown(&html, "#scene-0 .chart .marks > *");
     assert_eq!(marks.len(), 3 * 4);
     assert_eq!(shown(&html, "#scene-0 .chart .floor > *").len(), 1);
     // The reference; an image and an error of each at each level; a variance of each.
     assert_eq!(all(&html, "#scene-0 img.source").len(), 1 + 3 * 4 * 2 + 3);
+    // Who does not report processor time has no curve over it.
+    let over = |axis: &str| {
+        all(&html, &format!("#scene-0 .chart[data-measure='relmse'][data-axis='{axis}'] .marks > *")).len()
+    };
+    assert_eq!((over("seconds"), over("cpu"), over("samples")), (3 * 4, 2 * 4, 3 * 4));
     let footer = texts(&html, "footer").concat();
-    for said in [&study.outcome.command, &study.outcome.machine] {
-        assert!(footer.contains(said.as_str()), "{said} is not in: {footer}");
+    for said in
+        [&study.outcome.command, &study.outcome.machine, "2026-11-27 13:20 UTC", "0.50, 0.25, 0.12 before"]
+    {
+        assert!(footer.contains(said), "{said} is not in: {footer}");
     }
     assert!(texts(&html, "#scene-0 header").concat().contains(&study.outcome.scenes[0].reference.how));
+}
+
+/// By what it is known, what part of the errors it makes, and who agrees that is made otherwise.
+#[test]
+fn a_page_says_why_its_reference_can_be_trusted() {
+    let mut study = Study::new(&["room"], &["bdpt", "pt", "volpath"], 4);
+    let header = |study: &Study| texts(&page_of(study), "#scene-0 header .says").concat();
+    let said = header(&study);
+    for part in [
+        "own relMSE is 1.00×10⁻⁵, by how far its 16 independent batches are apart",
+        "0.0267 % to 0.0800 % of the contenders'",
+        "agrees with the reference's, and standard errors between them: pt (−1.50).",
+        "by more than chance, in standard errors: volpath (12.0).",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    let scene = &mut study.outcome.scenes[0];
+    (scene.reference.apart, scene.reference.own_relmse) = (Some(0.7), None);
+    scene.contenders.truncate(1);
+    study.rewrite();
+    let said = header(&study);
+    for part in ["own relMSE is not known.", "renderers are 0.700 standard errors apart", "none can confirm"]
+    {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
+/// Of versions that knew less.
+#[test]
+fn an_old_study_still_has_its_page() {
+    let study = Study::new(&["room"], &["bdpt", "pt"], 3);
+    let mut old = serde_json::to_value(&study.outcome).unwrap();
+    forget(&mut old, &["conditions", "known_by", "apart", "like", "chosen", "cpu_seconds"]);
+    fs::write(study.folder.path().join("study.json"), old.to_string()).unwrap();
+    let html = page_of(&study);
+    assert_eq!(all(&html, ".chart").len(), 10);
+    assert!(!texts(&html, "footer").concat().contains("UTC") && all(&html, ".notes").is_empty());
+    assert!(texts(&html, ".numbers th").iter().all(|head| head != "CPU seconds"));
+}
+
+/// Removes all that has one of `names`, wherever it is.
+fn forget(value: &mut serde_json::Value, names: &[&str]) {
+    match value {
+        serde_json::Value::Object(map) => {
+            map.retain(|name, _| !names.contains(&name.as_str()));
+            map.values_mut().for_each(|inner| forget(inner, names));
+        }
+        serde_json::Value::Array(all) => all.iter_mut().for_each(|inner| forget(inner, names)),
+        _ => {}
+    }
 }
 
 #[test]
@@ -121,7 +178,12 @@ fn notes_and_ratios_are_shown() {
     study.rewrite();
     let html = page_of(&study);
     let header = texts(&html, "#scene-0 header").concat();
-    assert!(header.contains("lt cannot render it: why.") && header.contains("b: only 1.2 times"), "{header}");
+    assert!(header.contains("lt cannot render it: why."), "{header}");
+    // Each contender's own, beside its name.
+    assert_eq!(texts(&html, "#scene-0 .notes dt"), ["a", "b"]);
+    let said = texts(&html, "#scene-0 .notes dd");
+    assert_eq!(said[0], "bdpt (hit, join); 1 of 4 seeds chose otherwise");
+    assert!(said[1].contains("only 1.2 times"), "{said:?}");
     let shown = texts(&html, "#scene-0 .legend td");
     assert!(shown.contains(&"1".to_owned()) && shown.contains(&"0.500×".to_owned()), "{shown:?}");
 }
@@ -136,7 +198,14 @@ fn the_record_has_all_curves_and_images() {
     assert_eq!(paths.len(), 3);
     let (table, curves, strips) =
         (text("convergence.md"), text("convergence.svg"), text("convergence_strips.svg"));
-    for said in [&study.outcome.command, &study.outcome.machine, "church <&>", "](convergence.svg)"] {
+    for said in [
+        &study.outcome.command,
+        &study.outcome.machine,
+        "church <&>",
+        "](convergence.svg)",
+        "13:20 UTC",
+        "CPU seconds",
+    ] {
         assert!(table.contains(said), "{said}: {table}");
     }
     for svg in [&curves, &strips] {

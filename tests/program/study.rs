@@ -83,7 +83,8 @@ fn foggy_room() -> Value {
 
 /// All that is not time in an outcome.
 fn timeless(outcome: &Value) -> Value {
-    const TIMES: [&str; 5] = ["seconds", "slope", "efficiency", "ratio", "load_seconds"];
+    const TIMES: [&str; 7] =
+        ["seconds", "cpu_seconds", "slope", "efficiency", "ratio", "load_seconds", "conditions"];
     match outcome {
         Value::Object(map) => {
             let kept = map.iter().filter(|(name, _)| !TIMES.contains(&name.as_str()));
@@ -96,9 +97,10 @@ fn timeless(outcome: &Value) -> Value {
 
 /// The rows of `study.csv` without their seconds.
 fn timeless_rows(csv: &str) -> Vec<Vec<String>> {
-    let seconds = csv.lines().next().unwrap().split(',').position(|name| name == "seconds").unwrap();
+    let is_time: Vec<bool> =
+        csv.lines().next().unwrap().split(',').map(|name| name.contains("seconds")).collect();
     let fields = |line: &str| {
-        let fields = line.split(',').enumerate().filter(|(i, _)| *i != seconds);
+        let fields = line.split(',').enumerate().filter(|(i, _)| !is_time[*i]);
         fields.map(|(_, field)| field.to_owned()).collect()
     };
     csv.lines().map(fields).collect()
@@ -199,7 +201,9 @@ fn a_finished_study_is_told_again_without_rendering() {
     let desk = Desk::new(&[("lock.json", foggy_room())]);
     let words = ["lock.json", "-o", "out", "--spp", "4", "--seeds", "2", "--reference-spp", "32"];
     let reported = desk.study(&words);
-    for part in ["lock, 8 x 8", "contender", "bdpt", "pt", "relMSE", "own relMSE", "study.json"] {
+    for part in
+        ["lock, 8 x 8", "contender", "bdpt", "pt", "relMSE", "own relMSE", "CPU seconds", "study.json"]
+    {
         assert!(reported.contains(part), "{part}: {reported}");
     }
     let outcome = desk.json("out/study.json");
@@ -336,14 +340,20 @@ fn bias_flattens_the_curve_and_shifts_the_mean() {
     let (low, high) = (number(&difference["low"]), number(&difference["high"]));
     assert!(low * high > 0.0 && low.abs().min(high.abs()) > 0.01, "{difference}");
     for hint in [
-        "march independent: is biased by the step",
-        "march independent: its mean differs",
+        "differs by more than chance, in standard errors: march independent (",
         "exact independent cannot render it",
     ] {
         assert!(reported.contains(hint), "{hint}: {reported}");
     }
-    assert!(!reported.contains("closed_form independent: its mean differs"), "{reported}");
+    assert!(notes(biased).contains("is biased by the step") && notes(biased).contains("its mean differs"));
+    assert!(!notes(fair).contains("its mean differs"), "{reported}");
     assert_eq!(scene["contenders"].as_array().unwrap().len(), 2);
+}
+
+/// Of a contender.
+fn notes(contender: &Value) -> String {
+    let notes = contender["notes"].as_array().into_iter().flatten();
+    notes.map(|note| note.as_str().unwrap()).collect::<Vec<_>>().join("\n")
 }
 
 /// LW96 sec. 5: the bias of each step against flights without any, whatever the scene's own.
@@ -391,16 +401,21 @@ fn several_scenes_and_what_a_contender_cannot_show() {
     let more = ["--contender", "narrow, \"joined\": --strategies hit,join --max-depth 3"];
     let reported = desk.study(&[&["room.json", "mirror.json", "-o", "out"], &words[..], &more].concat());
     for hint in [
-        "lt: its variance is infinite",
-        "lt: does not sample light of area emitters seen by way of smooth",
-        "narrow, \"joined\": its mean",
+        "lt:\n  lt (lens",
+        "  its variance is infinite",
+        "  does not sample light of area emitters seen by way of smooth",
+        "narrow, \"joined\":\n  bdpt (hit, join",
     ] {
         assert!(reported.contains(hint), "{hint}: {reported}");
     }
-    // The narrow one makes no reference, though it covers all that the mirror shows.
-    assert!(!reported.contains("bdpt: its mean"), "{reported}");
     let outcome = desk.json("out/study.json");
     let scenes = outcome["scenes"].as_array().unwrap();
+    // The narrow one makes no reference, though it covers all that the mirror shows.
+    let of = |name: &str| {
+        let all = scenes.iter().flat_map(|scene| scene["contenders"].as_array().unwrap());
+        all.filter(|contender| contender["name"] == name).map(notes).collect::<String>()
+    };
+    assert!(of("narrow, \"joined\"").contains("its mean") && !of("bdpt").contains("its mean"), "{reported}");
     assert_eq!(scenes.iter().map(|s| s["name"].as_str().unwrap()).collect::<Vec<_>>(), ["room", "mirror"]);
     assert_eq!(scenes[0]["contenders"][0]["name"], "narrow, \"joined\"");
     assert!(scenes[0]["contenders"][0].get("ratio").is_none());
@@ -465,6 +480,57 @@ fn the_reference_is_as_deep_as_the_deepest_contender() {
     );
 }
 
+/// The least of `study.csv`'s seconds over all seeds of a contender.
+fn least_seconds(csv: &str, contender: &str) -> f64 {
+    let rows = csv.lines().map(|line| line.split(',').collect::<Vec<_>>()).filter(|row| row[1] == contender);
+    rows.map(|row| row[4].parse::<f64>().unwrap()).fold(f64::INFINITY, f64::min)
+}
+
+/// What precedes the first sample is in every seed's seconds, however often it was done before: a pilot, and a guide that is
+/// learnt, each of which takes far longer than a sample of each of 64 pixels.
+#[test]
+fn pilots_and_learning_are_among_the_seconds() {
+    let desk = Desk::new(&[("room.json", foggy_room())]);
+    let words = "room.json -o out --spp 1 --doublings 1 --seeds 4 --reference-spp 16 --threads 1";
+    let all = "--strategies hit,next-event,join,lens";
+    let contenders = ["bare: --integrator bdpt", "guided: --integrator bdpt --guide always"]
+        .map(|words| format!("{words} {all}"));
+    let mut words: Vec<&str> = words.split(' ').collect();
+    for contender in contenders.iter().map(String::as_str).chain(["piloted: --integrator bdpt"]) {
+        words.extend(["--contender", contender]);
+    }
+    desk.study(&words);
+    let csv = fs::read_to_string(desk.path("out/study.csv")).unwrap();
+    let [bare, guided, piloted] = ["bare", "guided", "piloted"].map(|name| least_seconds(&csv, name));
+    assert!(guided > 4.0 * bare && piloted > 4.0 * bare, "{bare} {guided} {piloted}");
+    let outcome = desk.json("out/study.json");
+    let contenders = outcome["scenes"][0]["contenders"].as_array().unwrap();
+    let [bare, guided, piloted] =
+        [0, 1, 2].map(|index: usize| number(&contenders[index]["points"][0]["cpu_seconds"]["mean"]));
+    assert!(bare > 0.0 && guided > 4.0 * bare && piloted > 4.0 * bare, "CPU: {bare} {guided} {piloted}");
+    for contender in contenders {
+        assert!(contender["chosen"]["what"].as_str().unwrap().starts_with("bdpt (hit"), "{contender}");
+    }
+}
+
+/// When it was measured, and what the machine did before and after: of the first run, whoever continues it.
+#[test]
+fn a_study_knows_when_it_was_made() {
+    let desk = Desk::new(&[("room.json", foggy_room())]);
+    let words = ["room.json", "-o", "out", "--spp", "1", "--seeds", "2", "--reference-spp", "2"];
+    desk.study(&words);
+    let conditions = desk.json("out/study.json")["conditions"].clone();
+    let started = conditions["started"].as_str().unwrap();
+    assert!(started.starts_with("20") && started.ends_with(" UTC"), "{started}");
+    for load in ["load_before", "load_after"] {
+        assert_eq!(conditions[load].as_array().map(Vec::len), cfg!(unix).then_some(3), "{conditions}");
+    }
+    let page = fs::read_to_string(desk.path("out/study.html")).unwrap();
+    assert!(page.contains(started), "{started}");
+    desk.study(&words);
+    assert_eq!(desk.json("out/study.json")["conditions"], conditions);
+}
+
 /// A renderer of which only a command line is known: this program, seen from outside.
 fn outside(words: &str) -> String {
     let (command, rest) = words.split_once(' ').unwrap();
@@ -495,7 +561,8 @@ fn another_renderer_competes_by_its_command_line() {
         desk.path("script.sh"),
         format!(
             "for n in $(echo $1 | tr , ' '); do {} || exit 7; echo chatter; \
-             echo '{{\"spp\": '$n', \"seconds\": '$n'e-3, \"load_seconds\": 0.25}}'; done",
+             echo '{{\"spp\": '$n', \"seconds\": '$n'e-3, \"load_seconds\": 0.25, \
+             \"cpu_seconds\": '$n'e-2, \"plan\": \"by hand\"}}'; done",
             outside("render $3 -o $2/$n.exr --spp $n --seed $4 > /dev/null")
         ),
     )
@@ -515,10 +582,18 @@ fn another_renderer_competes_by_its_command_line() {
         assert!((relmse(0) / relmse(2) - 1.0).abs() < 1e-9 && (relmse(1) / relmse(2) - 1.0).abs() < 1e-9);
         let (seconds, samples) = (&points(1)[budget]["seconds"]["mean"], &points(1)[budget]["samples"]);
         assert!((1e3 * number(seconds) / number(samples) - 1.0).abs() < 1e-9, "{seconds} {samples}");
+        let cpu = |contender: usize| points(contender)[budget]["cpu_seconds"]["mean"].as_f64();
+        assert!(cpu(0).is_none() && (10.0 * number(seconds) / cpu(1).unwrap() - 1.0).abs() < 1e-9);
     }
     assert_eq!(scene["contenders"][1]["load_seconds"], json!(0.25));
-    assert!(reported.contains("one by one: its seconds are those of the whole command"), "{reported}");
-    assert!(!reported.contains("at once: its seconds"), "{reported}");
+    assert_eq!(scene["contenders"][1]["chosen"]["what"], "by hand");
+    let outside = "its seconds are those of the whole command";
+    assert!(
+        notes(&scene["contenders"][0]).contains(outside) && !notes(&scene["contenders"][1]).contains(outside)
+    );
+    // Both renderers of the reference are contenders of the same samples' kind: only pt is made otherwise.
+    let trust = "The means of its renderers are";
+    assert!(reported.contains(trust) && scene["reference"]["apart"].is_number(), "{reported}");
     let how = scene["reference"]["how"].as_str().unwrap();
     assert!(
         how.starts_with("pooled by precision") && how.contains("one by one") && how.contains("bdpt"),

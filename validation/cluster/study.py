@@ -66,7 +66,9 @@ def combine(folders: list[Path], output: Path, command: str) -> None:
         shutil.copytree(folder / "images", output / "images", dirs_exist_ok=True)
     machines = sorted({study["machine"] for study in studies})
     scenes = [scene for study in studies for scene in study["scenes"]]
-    whole = {**studies[0], "command": command, "machine": "; ".join(machines), "scenes": scenes}
+    # Dates and loads are those of one machine.
+    conditions = studies[0].get("conditions") if len(studies) == 1 else None
+    whole = {**studies[0], "command": command, "machine": "; ".join(machines), "conditions": conditions, "scenes": scenes}
     tables = [(folder / "study.csv").read_text().splitlines(keepends=True) for folder in done]
     files.write_text(output / "study.csv", "".join([tables[0][0], *(row for table in tables for row in table[1:])]))
     files.write_text(output / "study.json", json.dumps(whole, indent=2) + "\n")

@@ -1,10 +1,10 @@
 //! Who takes part in a study: ways of rendering of this program, and other renderers.
 
-use super::external::External;
+use super::{clock::CpuClock, external::External};
 use crate::{
     error::Result,
     render::Settings,
-    scene::{Scene, build::Setup},
+    scene::{Kept, Scene, build::Setup},
     transport::{Options, Strategies},
 };
 use serde::{Deserialize, Serialize};
@@ -55,6 +55,40 @@ pub struct Entry {
     pub notes: Vec<String>,
 }
 
+/// What precedes the first sample of every render, as far as it is done but once: the pilot.
+#[derive(Clone, Debug, Default)]
+pub struct Head {
+    /// Its processor time (s); its time is in the settings' budget.
+    pub cpu_seconds: f64,
+    /// What it learnt; renders begin with that, and learn the rest themselves, each at its own expense.
+    pub learnt: Kept,
+    /// The same of radiance.
+    pub radiance: Kept,
+    /// What renders do, in a line.
+    pub plan: String,
+}
+
+impl Head {
+    /// Does what precedes renders of `scene`, from nothing.
+    pub fn of<T>(scene: &Scene, pilot: impl FnOnce() -> Result<(T, String)>) -> Result<(T, Self)> {
+        let lights = &scene.lights;
+        Self::default().put_back(scene);
+        let clock = CpuClock::start(0.0);
+        let (found, plan) = pilot()?;
+        let cpu_seconds = clock.seconds().unwrap_or(0.0);
+        Ok((
+            found,
+            Self { cpu_seconds, learnt: lights.learnt.kept(), radiance: lights.radiance.kept(), plan },
+        ))
+    }
+
+    /// Leaves with `scene` what was learnt by then, and nothing else: the next render is as the first.
+    pub fn put_back(&self, scene: &Scene) {
+        scene.lights.learnt.put_back(&self.learnt);
+        scene.lights.radiance.put_back(&self.radiance);
+    }
+}
+
 /// What renders a scene, ready to do so.
 #[derive(Clone)]
 pub enum Renderer {
@@ -64,6 +98,8 @@ pub enum Renderer {
         settings: Settings,
         /// Time of reading and building the scene (s).
         load_seconds: f64,
+        /// What the pilot left to renders.
+        head: Head,
     },
     /// Another one.
     External(External),

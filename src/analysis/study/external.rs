@@ -12,9 +12,11 @@
 //! With `{spp}` it runs once for each budget. With `{budgets}` it runs once for each seed, so that starting and loading are
 //! paid once, and may go on from each budget to the next one as this program does. On standard output it reports, on a line
 //! for each image, `{"spp": 16, "seconds": 1.5}`: the time that rendering so many samples took, without starting, loading and
-//! compiling, whose time may be reported as `"load_seconds"`. Other lines are ignored. A command with `{spp}` that reports
+//! compiling, whose time may be reported as `"load_seconds"`. It may add `"cpu_seconds"`, the processor time of all its threads
+//! for the same samples, and `"plan"`, what it does in a line of text. Other lines are ignored. A command with `{spp}` that reports
 //! nothing is timed from outside. Exit codes other than 0 are errors, explained by the last line on standard error.
 
+use super::unit::Seen;
 use crate::{
     analysis::picture,
     error::{Error, Result},
@@ -39,11 +41,13 @@ pub struct External {
 /// Images at growing budgets, and what is known of their times.
 pub struct Rendered {
     /// One a budget.
-    pub snapshots: Vec<Snapshot>,
+    pub seen: Vec<Seen>,
     /// Time of starting, loading and compiling (s), where it is reported.
     pub load_seconds: Option<f64>,
     /// The times are those of the whole command: none were reported.
     pub is_timed_outside: bool,
+    /// What it did at the last budget, in a line, where it says.
+    pub plan: Option<String>,
 }
 
 /// A line of the command's report.
@@ -52,6 +56,8 @@ struct Report {
     spp: u64,
     seconds: f64,
     load_seconds: Option<f64>,
+    cpu_seconds: Option<f64>,
+    plan: Option<String>,
 }
 
 /// The words of a command line as a shell would split them, refused unless it renders what is requested.
@@ -103,7 +109,8 @@ impl External {
 
     /// Renders with `seed` at all `budgets` (samples per pixel), in growing order.
     pub fn render(&self, seed: u64, budgets: &[u64]) -> Result<Rendered> {
-        let mut rendered = Rendered { snapshots: Vec::new(), load_seconds: None, is_timed_outside: false };
+        let mut rendered =
+            Rendered { seen: Vec::new(), load_seconds: None, is_timed_outside: false, plan: None };
         for budgets in budgets.chunks(if self.is_at_once { budgets.len().max(1) } else { 1 }) {
             self.run(seed, budgets, &mut rendered)?;
         }
@@ -141,7 +148,11 @@ impl External {
             rendered.load_seconds = rendered.load_seconds.or(report.and_then(|report| report.load_seconds));
             rendered.is_timed_outside |= report.is_none();
             let pixels = self.image(&file(spp), &words)?;
-            rendered.snapshots.push(Snapshot { pixels, samples_per_pixel: *spp, elapsed });
+            let snapshot = Snapshot { pixels, samples_per_pixel: *spp, elapsed };
+            let cpu_seconds = report.and_then(|report| report.cpu_seconds);
+            let cpu_seconds = cpu_seconds.filter(|seconds| *seconds >= 0.0 && seconds.is_finite());
+            rendered.plan = report.and_then(|report| report.plan.clone());
+            rendered.seen.push(Seen { snapshot, cpu_seconds });
         }
         Ok(())
     }

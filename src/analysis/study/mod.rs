@@ -4,6 +4,8 @@
 //! `unit`, and the `store` keeps what is done, so that a study that was stopped goes on; `summary` and
 //! `table` report the results. Other renderers take part as `external` commands.
 
+pub mod clock;
+pub mod conditions;
 pub mod contender;
 pub mod external;
 pub mod outcome;
@@ -15,4 +17,5 @@ pub mod run;
 pub mod store;
 pub mod summary;
 pub mod table;
+pub mod trust;
 pub mod unit;

@@ -12,10 +12,24 @@ pub struct Outcome {
     pub command: String,
     /// Processor and threads that all contenders had.
     pub machine: String,
+    /// When it was made, and what else the machine did; none in studies of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub conditions: Option<Conditions>,
     /// Confidence of every interval, such as 0.95.
     pub confidence: f64,
     /// One entry a scene.
     pub scenes: Vec<SceneOutcome>,
+}
+
+/// When a study was made, and what else its machine did.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Conditions {
+    /// When its first run began: date and time of day, UTC.
+    pub started: String,
+    /// Load average over 1, 5 and 15 minutes before the first render; none where the system does not say.
+    pub load_before: Option<[f64; 3]>,
+    /// The same after the last.
+    pub load_after: Option<[f64; 3]>,
 }
 
 /// What was found for one scene.
@@ -45,6 +59,53 @@ pub struct Reference {
     pub how: String,
     /// Its own relMSE: the expected value of the measure between it and the truth; none if not known.
     pub own_relmse: Option<f64>,
+    /// What that is known by.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub known_by: Option<String>,
+    /// The means of the renderers that made it together are at most so many standard errors apart; none of one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub apart: Option<f64>,
+    /// Contenders that are made as it is, with other seeds: what they agree with is themselves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub like: Vec<String>,
+}
+
+/// How far two means are from each other.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Apart {
+    /// In standard errors of their difference, which is positive where the contender is brighter.
+    pub errors: f64,
+    /// By chance alone they are further apart than this once in a thousand studies.
+    pub limit: f64,
+}
+
+impl Apart {
+    /// True if the means may be equal.
+    pub fn is_chance(&self) -> bool {
+        self.errors.abs() <= self.limit
+    }
+}
+
+/// What a contender did, as it says itself.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Chosen {
+    /// By the first seed, at the last budget.
+    pub what: String,
+    /// Seeds that did otherwise.
+    pub otherwise: u64,
+    /// Seeds in all.
+    pub seeds: u64,
+}
+
+impl Chosen {
+    /// In a sentence.
+    pub fn sentence(&self) -> String {
+        let Self { what, otherwise, seeds } = self;
+        match otherwise {
+            0 => what.clone(),
+            _ => format!("{what}; {otherwise} of {seeds} seeds chose otherwise"),
+        }
+    }
 }
 
 /// One way of rendering a scene, at growing budgets.
@@ -63,6 +124,12 @@ pub struct ContenderOutcome {
     /// Its efficiency over that of the scene's first contender, seeds paired; none for that one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ratio: Option<Interval>,
+    /// Its strategies and the like, where it says: what a pilot chose, if there was one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chosen: Option<Chosen>,
+    /// The mean of its images, from that of the reference; none where an image held no numbers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub apart: Option<Apart>,
     /// Variance per pixel and channel of one render at the last budget, where it lies beside `study.json`.
     pub variance: PathBuf,
     /// What the reader should know: paths it leaves out, signs of bias, an error that is the reference's own.
@@ -77,6 +144,9 @@ pub struct Point {
     pub samples: u64,
     /// Time of rendering (s), loading and compiling left out.
     pub seconds: Interval,
+    /// Processor time for the same, of all threads, user and system (s); none where it is not known of every seed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cpu_seconds: Option<Interval>,
     /// Mean squared error (radiance^2).
     pub mse: Interval,
     /// mean((x - r)^2 / (r^2 + 0.01 m^2)), m the mean luminance of r.

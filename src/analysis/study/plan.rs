@@ -99,7 +99,7 @@ pub fn samples(entry: &Entry, effort: Effort, first_seed: u64) -> Result<u64> {
             let mut spp = 1;
             loop {
                 let rendered = external.render(seed, &[spp])?;
-                let taken = rendered.snapshots[0].elapsed.as_secs_f64().max(1e-6);
+                let taken = rendered.seen[0].snapshot.elapsed.as_secs_f64().max(1e-6);
                 if taken >= 0.5 * PILOT_PART * seconds || spp >= PILOT_SAMPLES {
                     break taken / spp as f64;
                 }

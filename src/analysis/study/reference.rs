@@ -32,6 +32,10 @@ pub struct Truth {
     pub own_relmse: Option<f64>,
     /// Standard error of its mean over pixels and channels, relative to that mean.
     pub mean_error: Option<f64>,
+    /// What its own relMSE is known by.
+    pub known_by: Option<String>,
+    /// Standard errors between the means of the renderers that made it together; none of one.
+    pub apart: Option<f64>,
     /// What the reader should know.
     pub notes: Vec<String>,
 }
@@ -216,7 +220,7 @@ pub fn make(
             let seed = first_seed.wrapping_add(FIRST_SEED).wrapping_add(batch);
             let mut image = None;
             let share = &mut |share: f64| notify((batch as f64 + share) / all as f64, false);
-            unit::shoot(maker, seed, &[part.samples], share, &mut |snapshot| image = Some(snapshot.pixels))?;
+            unit::shoot(maker, seed, &[part.samples], share, &mut |seen| image = Some(seen.snapshot.pixels))?;
             let (width, height) = maker.size();
             store.write_image(file(name, batch), &Picture::new(width, height, image.unwrap_or_default()))?;
         }
@@ -251,6 +255,7 @@ fn describe(Batches { how, like, count, samples }: &Batches) -> String {
 /// What one renderer computed of a reference.
 struct Made {
     how: String,
+    batches: usize,
     mean: Vec<DVec3>,
     /// Of the mean.
     variance: Vec<DVec3>,
@@ -270,7 +275,7 @@ impl Made {
             })
             .unzip();
         let size = (images[0].width, images[0].height);
-        Self { how, mean, variance, whole: Mean::of(&means), size }
+        Self { how, batches: images.len(), mean, variance, whole: Mean::of(&means), size }
     }
 
     fn picture(&self) -> Picture {
@@ -288,9 +293,11 @@ impl Made {
         relative.sum::<f64>() / self.mean.len() as f64
     }
 
-    fn truth(self, notes: Vec<String>) -> Truth {
+    fn truth(self, apart: Option<f64>, notes: Vec<String>) -> Truth {
         Truth {
             own_relmse: Some(self.relmse()),
+            known_by: Some(format!("how far its {} independent batches are apart", self.batches)),
+            apart,
             mean_error: Some(if self.whole.error == 0.0 {
                 0.0
             } else {
@@ -317,10 +324,10 @@ fn pooled(mut parts: Vec<Made>) -> Truth {
             "the image means of its reference's renderers are {apart:.1} standard errors apart, one of \
                             them misses light, and the brightest alone is the reference: {who}"
         );
-        return parts.swap_remove(0).truth(vec![note]);
+        return parts.swap_remove(0).truth(None, vec![note]);
     }
     if parts.len() == 1 {
-        return parts.swap_remove(0).truth(Vec::new());
+        return parts.swap_remove(0).truth(None, Vec::new());
     }
     let precisions: Vec<f64> = parts.iter().map(|part| 1.0 / part.relmse().max(f64::MIN_POSITIVE)).collect();
     let all: f64 = precisions.iter().sum();
@@ -337,12 +344,13 @@ fn pooled(mut parts: Vec<Made>) -> Truth {
     let how: Vec<&str> = parts.iter().map(|part| part.how.as_str()).collect();
     let made = Made {
         how: format!("pooled by precision: {}", how.join("; ")),
+        batches: parts.iter().map(|part| part.batches).sum(),
         mean: pixels.clone().map(|pixel| sum(&|part, w| w * part.mean[pixel])).collect(),
         variance: pixels.map(|pixel| sum(&|part, w| w * w * part.variance[pixel])).collect(),
         whole,
         size: parts[0].size,
     };
-    made.truth(Vec::new())
+    made.truth(Some(apart).filter(|apart| apart.is_finite()), Vec::new())
 }
 
 /// Mean and variance of values, two at least.
@@ -368,6 +376,8 @@ pub fn read(wanted: &ReferenceFile, width: usize, height: usize) -> Result<Truth
         picture,
         how: format!("read from {}", wanted.file),
         own_relmse: wanted.own_relmse,
+        known_by: wanted.own_relmse.map(|_| "what --reference-error says".to_owned()),
+        apart: None,
         mean_error: None,
         notes: Vec::new(),
     })
@@ -388,10 +398,12 @@ mod tests {
         // The mean's variance is 1/3; relative to 2^2 + 0.01 2^2, and to the mean.
         assert!((truth.own_relmse.unwrap() - 1.0 / 3.0 / 4.04).abs() < 1e-6);
         assert!((truth.mean_error.unwrap() - (1.0f64 / 3.0).sqrt() / 2.0).abs() < 1e-12);
+        assert!(truth.known_by.unwrap().contains("its 3 independent batches") && truth.apart.is_none());
         assert_eq!(pooled(vec![made(&[0.0, 0.0])]).mean_error, Some(0.0));
         // Of two, the one of a ninth of the variance counts nine times.
         let both = pooled(vec![made(&[1.0, 2.0, 3.0]), made(&[-1.0, 2.0, 5.0])]);
         assert!(both.how.starts_with("pooled") && both.notes.is_empty());
+        assert_eq!(both.apart, Some(0.0));
         assert!((both.own_relmse.unwrap() - (0.81 / 3.0 + 0.01 * 3.0) / 4.04).abs() < 1e-6, "{both:?}");
         assert!((both.mean_error.unwrap() - (0.81f64 / 3.0 + 0.01 * 3.0).sqrt() / 2.0).abs() < 1e-12);
         // Two that disagree are not mixed.

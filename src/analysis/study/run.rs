@@ -1,6 +1,7 @@
 //! A whole study: plan, reference, turns, sums; scene by scene, from wherever it was stopped.
 
 use super::{
+    conditions,
     contender::{Contender, Enter, Entry, How},
     plan::{self, Part, Plan, ScenePlan},
     question::{Effort, Question, Wanted},
@@ -13,7 +14,7 @@ use super::{
 use crate::{
     analysis::{
         picture::Picture,
-        study::outcome::{ContenderOutcome, Outcome, Reference, SceneOutcome},
+        study::outcome::{Conditions, ContenderOutcome, Outcome, Reference, SceneOutcome},
     },
     error::{Error, Result},
     transport::coverage,
@@ -53,19 +54,22 @@ pub fn run(
 ) -> Result<Outcome> {
     let (store, plan) = Store::open(folder, question, restart)?;
     let mut study = Study {
+        conditions: conditions::open(&store)?,
         store,
         plan,
         signature,
         ledger: Ledger::new(question, notify),
         csv: table::CSV_HEADER.into(),
     };
-    let scenes = (0..question.scenes.len()).map(|scene| study.scene(scene, enter));
+    let scenes: Vec<SceneOutcome> =
+        (0..question.scenes.len()).map(|scene| study.scene(scene, enter)).collect::<Result<_>>()?;
     let outcome = Outcome {
         made_by: question.program.clone(),
         command: signature.command.clone(),
         machine: signature.machine.clone(),
+        conditions: Some(study.conditions),
         confidence: signature.confidence,
-        scenes: scenes.collect::<Result<_>>()?,
+        scenes,
     };
     study.store.write_text("study.csv", &study.csv)?;
     study.store.write_json("study.json", &outcome)?;
@@ -117,6 +121,7 @@ fn times(all: Effort, one: Effort) -> Option<f64> {
 
 struct Study<'a> {
     store: Store,
+    conditions: Conditions,
     plan: Plan,
     signature: &'a Signature,
     ledger: Ledger<'a>,
@@ -164,7 +169,9 @@ impl Study<'_> {
             notes.push("the reference's own error is not known: give it by --reference-error".to_owned());
         }
         let contenders = self.sum_up(name, &question, &players, &truth)?;
-        let reference = Reference { image, how: truth.how, own_relmse: truth.own_relmse };
+        let like = plan.reference.iter().filter_map(|part| part.like.clone()).collect();
+        let Truth { how, own_relmse, known_by, apart, .. } = truth;
+        let reference = Reference { image, how, own_relmse, known_by, apart, like };
         Ok(SceneOutcome { name: name.to_owned(), width, height, reference, contenders, notes })
     }
 
@@ -252,6 +259,7 @@ impl Study<'_> {
                     let ledger = &mut self.ledger;
                     let notify = &mut |share: f64| ledger.notify(1.0, share, &doing, false);
                     unit::run(&self.store, slot, entry, budgets, &truth.picture, number == 0, notify)?;
+                    conditions::note(&self.store, &mut self.conditions)?;
                 }
                 self.ledger.finish(1.0, &doing, is_old);
             }

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::analysis::{
     interval::{self, Mean},
-    study::outcome::{ContenderOutcome, Interval, Point},
+    study::outcome::{Apart, Chosen, ContenderOutcome, Interval, Point},
 };
 use std::path::PathBuf;
 
@@ -35,8 +35,9 @@ pub fn contender(
     if units.iter().any(|unit| unit.is_timed_outside) {
         notes.push("its seconds are those of the whole command, start included: it reports none".to_owned());
     }
+    let apart = apart(&last_of(units), truth);
     if let Some(last) = points.last() {
-        notes.extend(doubts(&last_of(units), last, truth));
+        notes.extend(doubts(&last_of(units), last, apart, truth));
     }
     ContenderOutcome {
         name: turns.name.to_owned(),
@@ -45,6 +46,8 @@ pub fn contender(
         efficiency: interval::bootstrap(units.len(), confidence, |picks| 1.0 / cost(units, picks)),
         ratio: first.map(|first| ratio(units, first, confidence)),
         points,
+        chosen: chosen(units),
+        apart,
         variance: variance_image(turns.first.scene, turns.first.contender),
         notes,
     }
@@ -59,9 +62,11 @@ fn point(turns: &Turns<'_>, index: usize, confidence: f64) -> Point {
     let all =
         |of: fn(&Measured) -> f64| turns.units.iter().map(|unit| of(&unit.points[index])).collect::<Vec<_>>();
     let positive = |of| interval::positive(&all(of), confidence);
+    let cpu: Option<Vec<f64>> = turns.units.iter().map(|unit| unit.points[index].cpu_seconds).collect();
     Point {
         samples: turns.units[0].points[index].samples,
         seconds: positive(|m| m.seconds),
+        cpu_seconds: cpu.map(|all| interval::positive(&all, confidence)),
         mse: positive(|m| m.mse),
         relmse: positive(|m| m.relmse),
         trimmed_relmse: positive(|m| m.trimmed_relmse),
@@ -70,6 +75,22 @@ fn point(turns: &Turns<'_>, index: usize, confidence: f64) -> Point {
         difference: interval::plain(&all(|m| m.difference), confidence),
         image: turns.first.shown_image(index),
     }
+}
+
+/// What the first seed did, and how many did otherwise.
+fn chosen(units: &[Unit]) -> Option<Chosen> {
+    let first = units.first()?.plan.as_ref()?;
+    let otherwise = units.iter().filter(|unit| unit.plan.as_ref() != Some(first)).count() as u64;
+    Some(Chosen { what: first.clone(), otherwise, seeds: units.len() as u64 })
+}
+
+/// The mean of the images of the last budget, from that of the reference.
+fn apart(last: &[&Measured], truth: &Truth) -> Option<Apart> {
+    let difference = Mean::of(&last.iter().map(|m| m.difference).collect::<Vec<_>>());
+    let error = difference.error.hypot(truth.mean_error.unwrap_or(0.0)).hypot(ROUNDING);
+    let errors = difference.value / error;
+    let limit = interval::quantile(difference.freedom, SURE);
+    errors.is_finite().then_some(Apart { errors, limit })
 }
 
 /// The mean over seeds of the slope of each seed's own curve: its points share samples, seeds share nothing.
@@ -104,16 +125,14 @@ const ROUNDING: f64 = 1e-5;
 const FAR_ABOVE: f64 = 10.0;
 
 /// What the last budget gives cause to say.
-fn doubts(last: &[&Measured], point: &Point, truth: &Truth) -> Vec<String> {
+fn doubts(last: &[&Measured], point: &Point, apart: Option<Apart>, truth: &Truth) -> Vec<String> {
     let mut doubts = Vec::new();
     let broken = last.iter().filter(|m| !m.mse.is_finite()).count();
     if broken > 0 {
         doubts.push(format!("{broken} of its {} images hold NaN or infinite values", last.len()));
     }
-    let difference = Mean::of(&last.iter().map(|m| m.difference).collect::<Vec<_>>());
-    let error = difference.error.hypot(truth.mean_error.unwrap_or(0.0)).hypot(ROUNDING);
-    if difference.value.abs() > interval::quantile(difference.freedom, SURE) * error {
-        let percent = 100.0 * difference.value;
+    if apart.is_some_and(|apart| !apart.is_chance()) {
+        let percent = 100.0 * point.difference.mean;
         let why = "light that it leaves out or finds too seldom, bias, or a reference that is off";
         doubts.push(format!("its mean differs from the reference's by {percent:+.2} %: {why}"));
     }
@@ -137,6 +156,7 @@ mod tests {
         Measured {
             samples,
             seconds,
+            cpu_seconds: Some(2.0 * seconds),
             mse: relmse,
             relmse,
             trimmed_relmse: relmse,
@@ -151,13 +171,27 @@ mod tests {
         let at = |seed: u64, n: u64| measured(n, scale * noise(seed) / n as f64, bias * noise(seed));
         let points = |seed| [1, 2, 4, 8].map(|n| at(seed, n)).to_vec();
         (0..4)
-            .map(|seed| Unit { seed, load_seconds: None, is_timed_outside: false, points: points(seed) })
+            .map(|seed| Unit {
+                seed,
+                load_seconds: None,
+                is_timed_outside: false,
+                plan: Some("pt".into()),
+                points: points(seed),
+            })
             .collect()
     }
 
     fn truth(own: f64) -> Truth {
         let picture = Picture::new(1, 1, vec![Spectrum::ONE]);
-        Truth { picture, how: String::new(), own_relmse: Some(own), mean_error: Some(0.0), notes: Vec::new() }
+        Truth {
+            picture,
+            how: String::new(),
+            own_relmse: Some(own),
+            mean_error: Some(0.0),
+            known_by: None,
+            apart: None,
+            notes: Vec::new(),
+        }
     }
 
     fn sum_up(units: &[Unit], first: Option<&[Unit]>, own: f64) -> ContenderOutcome {
@@ -173,6 +207,9 @@ mod tests {
         // relMSE x seconds is 0.01 in the mean.
         assert!((found.efficiency.mean - 100.0).abs() < 1e-6, "{:?}", found.efficiency);
         assert!(found.notes.is_empty() && found.ratio.is_none(), "{:?}", found.notes);
+        let (cpu, wall) = (found.points[2].cpu_seconds.unwrap(), found.points[2].seconds);
+        assert!((cpu.mean - 2.0 * wall.mean).abs() < 1e-12, "{cpu:?}");
+        assert!(found.apart.unwrap().is_chance(), "{:?}", found.apart);
         assert_eq!(found.points[2].image, PathBuf::from("images/a/b/2.exr"));
     }
 
@@ -183,6 +220,21 @@ mod tests {
         let mut broken = units(1.0, 0.0);
         broken[1].points[3].mse = f64::NAN;
         assert!(sum_up(&broken, None, 1e-6).notes[0].contains("1 of its 4 images"));
+    }
+
+    #[test]
+    fn what_seeds_choose_and_what_some_of_them_do_not_know() {
+        let mut units = units(1.0, 0.05);
+        units[2].plan = Some("bdpt".into());
+        units[3].points[1].cpu_seconds = None;
+        let found = sum_up(&units, None, 1e-6);
+        let chosen = found.chosen.unwrap();
+        assert_eq!((chosen.what.as_str(), chosen.otherwise, chosen.seeds), ("pt", 1, 4));
+        assert_eq!(chosen.sentence(), "pt; 1 of 4 seeds chose otherwise");
+        let known: Vec<bool> = found.points.iter().map(|point| point.cpu_seconds.is_some()).collect();
+        assert_eq!(known, [true, false, true, true]);
+        let apart = found.apart.unwrap();
+        assert!(!apart.is_chance() && apart.errors > 0.0, "{apart:?}");
     }
 
     /// The noise of paired seeds cancels: the ratio has no interval at all.

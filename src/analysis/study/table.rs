@@ -1,12 +1,12 @@
 //! What a study found, as text: a table to look at and rows for other programs.
 
-use super::unit::Unit;
-use crate::analysis::study::outcome::{ContenderOutcome, Interval, Outcome, SceneOutcome};
+use super::{trust, unit::Unit};
+use crate::analysis::study::outcome::{Chosen, ContenderOutcome, Interval, Outcome, SceneOutcome};
 use std::fmt::Write as _;
 
 /// First row of `study.csv`.
 pub const CSV_HEADER: &str =
-    "scene,contender,samples,seed,seconds,mse,relmse,trimmed_relmse,mape,smape,difference\n";
+    "scene,contender,samples,seed,seconds,mse,relmse,trimmed_relmse,mape,smape,difference,cpu_seconds\n";
 
 /// Rows of `study.csv`: one a budget and seed.
 pub fn csv_rows(scene: &str, contender: &str, units: &[Unit]) -> String {
@@ -15,7 +15,8 @@ pub fn csv_rows(scene: &str, contender: &str, units: &[Unit]) -> String {
     for (unit, m) in units.iter().flat_map(|unit| unit.points.iter().map(move |m| (unit, m))) {
         let numbers = [m.seconds, m.mse, m.relmse, m.trimmed_relmse, m.mape, m.smape, m.difference];
         let numbers = numbers.map(|number| number.to_string()).join(",");
-        let _ = writeln!(rows, "{scene},{contender},{},{},{numbers}", m.samples, unit.seed);
+        let cpu = m.cpu_seconds.map_or(String::new(), |seconds| seconds.to_string());
+        let _ = writeln!(rows, "{scene},{contender},{},{},{numbers},{cpu}", m.samples, unit.seed);
     }
     rows
 }
@@ -36,10 +37,10 @@ pub fn text(outcome: &Outcome) -> String {
 
 fn scene_text(scene: &SceneOutcome, percent: f64) -> String {
     let SceneOutcome { name, width, height, reference, .. } = scene;
-    let own = reference.own_relmse.map_or("not known".to_owned(), |own| format!("{own:.2e}"));
     let mut text = format!("{name}, {width} x {height}; intervals of {percent} %\n");
-    let _ = writeln!(text, "reference: {}; its own relMSE: {own}", reference.how);
-    let rows: Vec<[String; 9]> =
+    let _ = writeln!(text, "reference: {}", reference.how);
+    trust::sentences(scene, short).iter().for_each(|sentence| text += &format!("{sentence}\n"));
+    let rows: Vec<[String; 10]> =
         std::iter::once(HEADER.map(str::to_owned)).chain(scene.contenders.iter().filter_map(row)).collect();
     for row in &rows {
         let widths = (0..row.len()).map(|i| rows.iter().map(|row| row[i].chars().count()).max().unwrap_or(0));
@@ -53,18 +54,23 @@ fn scene_text(scene: &SceneOutcome, percent: f64) -> String {
             .collect();
         let _ = writeln!(text, "{}", line.join("  "));
     }
-    let notes =
-        scene.contenders.iter().flat_map(|c| c.notes.iter().map(move |note| format!("{}: {note}", c.name)));
-    for note in notes.chain(scene.notes.iter().cloned()) {
-        let _ = writeln!(text, "note: {note}");
-    }
+    scene.notes.iter().for_each(|note| text += &format!("note: {note}\n"));
+    scene.contenders.iter().for_each(|contender| text += &notes(contender));
     text
 }
 
-const HEADER: [&str; 9] = [
+/// What there is to know of a contender, below its name.
+fn notes(ContenderOutcome { name, chosen, notes, .. }: &ContenderOutcome) -> String {
+    let chosen = chosen.as_ref().map(Chosen::sentence);
+    let all: String = chosen.iter().chain(notes).map(|note| format!("  {note}\n")).collect();
+    if all.is_empty() { all } else { format!("{name}:\n{all}") }
+}
+
+const HEADER: [&str; 10] = [
     "contender",
     "spp",
     "seconds",
+    "CPU seconds",
     "relMSE",
     "trimmed",
     "slope",
@@ -73,12 +79,13 @@ const HEADER: [&str; 9] = [
     "mean off by",
 ];
 
-fn row(contender: &ContenderOutcome) -> Option<[String; 9]> {
+fn row(contender: &ContenderOutcome) -> Option<[String; 10]> {
     let last = contender.points.last()?;
     Some([
         contender.name.clone(),
         last.samples.to_string(),
         format!("{:.3}", last.seconds.mean),
+        last.cpu_seconds.map_or("-".into(), |seconds| format!("{:.3}", seconds.mean)),
         with_ends(last.relmse, short),
         short(last.trimmed_relmse.mean),
         contender.slope.map_or("-".into(), |slope| with_ends(slope, |x| format!("{x:.2}"))),

@@ -1,6 +1,7 @@
 //! One render of one contender, looked at on its way: all budgets of a seed share their samples.
 
 use super::{
+    clock::CpuClock,
     contender::{Entry, Renderer},
     store::Store,
 };
@@ -30,6 +31,9 @@ pub struct Unit {
     /// The times are those of a whole command, start included.
     #[serde(default)]
     pub is_timed_outside: bool,
+    /// What it did, in a line, where it says.
+    #[serde(default)]
+    pub plan: Option<String>,
     /// By growing budgets.
     pub points: Vec<Measured>,
 }
@@ -41,6 +45,9 @@ pub struct Measured {
     pub samples: u64,
     /// Time of rendering (s).
     pub seconds: f64,
+    /// Processor time for the same (s); none if not known.
+    #[serde(default)]
+    pub cpu_seconds: Option<f64>,
     /// Mean squared error.
     #[serde(with = "number")]
     pub mse: f64,
@@ -62,12 +69,13 @@ pub struct Measured {
 }
 
 impl Measured {
-    fn of(snapshot: &Snapshot, reference: &[Spectrum]) -> Self {
+    fn of(Seen { snapshot, cpu_seconds }: &Seen, reference: &[Spectrum]) -> Self {
         let Measures { mse, relmse, trimmed_relmse, mape, smape, difference, .. } =
             measures(&snapshot.pixels, reference);
         Self {
             samples: snapshot.samples_per_pixel,
             seconds: snapshot.elapsed.as_secs_f64(),
+            cpu_seconds: *cpu_seconds,
             mse,
             relmse,
             trimmed_relmse,
@@ -112,6 +120,14 @@ impl Slot<'_> {
     }
 }
 
+/// An image on its way.
+pub struct Seen {
+    /// The image and its time.
+    pub snapshot: Snapshot,
+    /// Processor time for it (s); none if not known.
+    pub cpu_seconds: Option<f64>,
+}
+
 /// Renders `entry` with `seed` up to the last of `marks`, and shows it at each. `notify` hears what share is
 /// done. What is known of the times, without any points.
 pub fn shoot(
@@ -119,11 +135,12 @@ pub fn shoot(
     seed: u64,
     marks: &[u64],
     notify: &mut dyn FnMut(f64),
-    show: &mut dyn FnMut(Snapshot),
+    show: &mut dyn FnMut(Seen),
 ) -> Result<Unit> {
-    let unit = |load_seconds| Unit { seed, load_seconds, is_timed_outside: false, points: Vec::new() };
+    let unit =
+        |load_seconds, plan| Unit { seed, load_seconds, is_timed_outside: false, plan, points: Vec::new() };
     match &entry.renderer {
-        Renderer::Own { settings, load_seconds } => {
+        Renderer::Own { settings, load_seconds, head } => {
             let last = marks.last().copied().unwrap_or(1);
             // The pilot's time is part of every image's.
             let budget = Budget { spent: settings.budget.spent, ..Budget::samples(last) };
@@ -131,13 +148,19 @@ pub fn shoot(
             let film = plain_film(entry);
             let all = last as f64 * film.len() as f64;
             let progress = &mut |progress: render::Progress| notify(progress.samples as f64 / all);
+            let mut clock = CpuClock::start(head.cpu_seconds);
+            let show = &mut |snapshot| {
+                let seen = Seen { snapshot, cpu_seconds: clock.seconds() };
+                clock.hold(|| show(seen));
+            };
             render::render_in_steps(&*entry.setup, &film, &settings, marks, progress, show)?;
-            Ok(unit(Some(*load_seconds)))
+            Ok(unit(Some(*load_seconds), Some(head.plan.clone())))
         }
         Renderer::External(external) => {
             let rendered = external.render(seed, marks)?;
-            rendered.snapshots.into_iter().for_each(show);
-            Ok(Unit { is_timed_outside: rendered.is_timed_outside, ..unit(rendered.load_seconds) })
+            rendered.seen.into_iter().for_each(show);
+            let is_timed_outside = rendered.is_timed_outside;
+            Ok(Unit { is_timed_outside, ..unit(rendered.load_seconds, rendered.plan) })
         }
     }
 }
@@ -165,7 +188,7 @@ fn plain_film(entry: &Entry) -> Film {
     film
 }
 
-/// Renders a unit and stores it; images of all budgets only if they are to be `shown`.
+/// Renders a unit as if nobody had rendered the scene before, and stores it; images of all budgets only if they are to be `shown`.
 pub fn run(
     store: &Store,
     slot: Slot<'_>,
@@ -176,12 +199,15 @@ pub fn run(
     notify: &mut dyn FnMut(f64),
 ) -> Result<()> {
     let (mut points, mut snapshots) = (Vec::new(), Vec::new());
-    let unit = shoot(entry, slot.seed, marks, notify, &mut |snapshot| {
-        points.push(Measured::of(&snapshot, &reference.pixels));
+    if let Renderer::Own { head, .. } = &entry.renderer {
+        head.put_back(&entry.setup.scene);
+    }
+    let unit = shoot(entry, slot.seed, marks, notify, &mut |seen| {
+        points.push(Measured::of(&seen, &reference.pixels));
         if !shown {
             snapshots.clear();
         }
-        snapshots.push(Picture { pixels: snapshot.pixels, ..*reference });
+        snapshots.push(Picture { pixels: seen.snapshot.pixels, ..*reference });
     })?;
     if shown {
         for (index, image) in snapshots.iter().enumerate() {
@@ -201,10 +227,13 @@ mod tests {
 
     #[test]
     fn the_difference_is_that_of_means() {
-        let snapshot = |value| Snapshot {
-            pixels: vec![Spectrum::splat(value), Spectrum::ZERO],
-            samples_per_pixel: 3,
-            elapsed: Duration::from_millis(250),
+        let snapshot = |value| Seen {
+            snapshot: Snapshot {
+                pixels: vec![Spectrum::splat(value), Spectrum::ZERO],
+                samples_per_pixel: 3,
+                elapsed: Duration::from_millis(250),
+            },
+            cpu_seconds: None,
         };
         let found = Measured::of(&snapshot(1.5), &[Spectrum::ONE, Spectrum::ZERO]);
         assert_eq!((found.samples, found.seconds, found.difference), (3, 0.25, 0.5));

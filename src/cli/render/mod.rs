@@ -22,7 +22,7 @@ use super::{
     scene::threads,
 };
 use crate::{
-    analysis::darkness,
+    analysis::{darkness, study::clock::CpuClock},
     error::{Error, Result},
     film::output,
     math::Spectrum,
@@ -105,7 +105,7 @@ fn animate(
 ) -> Result<Vec<Value>> {
     let Frames { first, last } = frames;
     let digits = frames.digits();
-    let (mut figures, mut spent) = (Vec::new(), task.settings.budget.spent);
+    let (mut figures, mut spent, mut clock) = (Vec::new(), task.settings.budget.spent, task.clock);
     for frame in first..=last {
         let time = clip.time(frame);
         if !clip.rebuilds {
@@ -119,20 +119,20 @@ fn animate(
         } else if frame > first {
             *setup = clip.frame(frame, setup)?;
             task = Task::new(task.arguments, setup, task.viewer)?.0;
-            spent = task.settings.budget.spent;
+            (spent, clock) = (task.settings.budget.spent, task.clock);
         }
         let budget = Budget { spent, ..task.settings.budget };
         let settings = Settings { seed: seed_of(task.settings.seed, frame), budget, ..task.settings };
         let mut made = task.made.clone();
         made["settings"]["seed"] = settings.seed.into();
         made["settings"]["time"] = time.into();
-        let task = Task { settings, made, ..task };
+        let task = Task { settings, made, clock, ..task };
         let label = format!("frame {frame} of {first}..{last}");
         let mut numbered = target.numbered(frame, digits);
         let mut figure = shoot(setup, &task, &mut numbered, Some(&label))?;
         // What was chosen for the first frame holds for all.
         target.display = numbered.display;
-        spent = Duration::ZERO;
+        (spent, clock) = (Duration::ZERO, CpuClock::start(0.0));
         figure["frame"] = frame.into();
         figure["time"] = time.into();
         figures.push(figure);
@@ -394,6 +394,7 @@ fn figures(image: &Image, task: &Task<'_>) -> Value {
     let mut figures = serde_json::json!({
         "samples_per_pixel": image.samples_per_pixel,
         "render_seconds": image.elapsed.as_secs_f64(),
+        "cpu_seconds": task.clock.seconds(),
         "relative_error": image.noise.map(|noise| noise.error),
         "relative_error_uncertainty": image.noise.map(|noise| noise.error * noise.uncertainty()),
         "profile": task.settings.profile.name(),

@@ -2,6 +2,7 @@
 
 use super::{arguments::Render, precision::precision, progressive, viewer::Viewer};
 use crate::{
+    analysis::study::clock::CpuClock,
     cli::{console::complain, interrupt, parsers::Samples, provenance},
     error::Result,
     learning::pilot::Choice,
@@ -25,6 +26,8 @@ pub(super) struct Task<'a> {
     pub made: Value,
     /// Where the picture so far is shown.
     pub viewer: &'a Mutex<Option<Viewer>>,
+    /// Processor time since before the pilot.
+    pub clock: CpuClock,
 }
 
 impl<'a> Task<'a> {
@@ -34,12 +37,13 @@ impl<'a> Task<'a> {
         setup: &Setup,
         viewer: &'a Mutex<Option<Viewer>>,
     ) -> Result<(Self, Option<Choice>)> {
+        let clock = CpuClock::start(0.0);
         let (settings, chosen) = settings(arguments, setup)?;
         let precision = precision(arguments, setup, &settings)?;
         let made =
             provenance::made(provenance::settings(&arguments.scene, setup, &settings, chosen, precision)?);
         let settings = Settings { seed: arguments.seed_of_part(), ..settings };
-        Ok((Self { settings, precision, arguments, made, viewer }, chosen))
+        Ok((Self { settings, precision, arguments, made, viewer, clock }, chosen))
     }
 
     /// Shows what there is in the viewer, if there is one; it goes when it fails.

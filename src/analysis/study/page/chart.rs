@@ -44,8 +44,11 @@ pub(super) struct Chart {
 impl Chart {
     /// Error over an axis, of all contenders of a scene; the reference's own error is the floor.
     pub(super) fn new(scene: &SceneOutcome, measure: &Measure, axis: &Axis) -> Self {
-        let point = |point: &Point| ((axis.of)(point), (measure.of)(point));
-        let curve = |contender: &ContenderOutcome| contender.points.iter().map(point).collect();
+        let point = |point: &Point| Some(((axis.of)(point)?, (measure.of)(point)));
+        let curve = |contender: &ContenderOutcome| match axis.is_known(contender) {
+            true => contender.points.iter().filter_map(point).collect(),
+            false => Vec::new(),
+        };
         let curves = scene.contenders.iter().map(curve).collect();
         let own = scene.reference.own_relmse.filter(|own| *own > 0.0 && measure.key == "relmse");
         Self::of(curves, Some(measure.slope), own)
@@ -137,6 +140,9 @@ impl Chart {
         let lower = points.iter().map(|(x, interval)| place(*x, interval.low));
         let upper = points.iter().rev().map(|(x, interval)| place(*x, interval.high));
         let outline: Vec<(f64, f64)> = lower.chain(upper).collect();
+        if outline.is_empty() {
+            return Ok(());
+        }
         // One budget has no area: its interval is a bar.
         if let [a, b] = outline[..] {
             return plane.draw_series(LineSeries::new([a, b], BLACK)).map(drop);

@@ -48,7 +48,9 @@ fn point(point: &Point) -> Value {
         (measure.key.to_owned(), Value::String(text))
     });
     let mut texts: Map<String, Value> = measured.collect();
-    texts.insert("seconds".into(), json!(figures::seconds(point.seconds.mean)));
+    let cpu = point.cpu_seconds.map(|cpu| format!("{} CPU s", figures::number(cpu.mean)));
+    let times: Vec<String> = [figures::seconds(point.seconds.mean)].into_iter().chain(cpu).collect();
+    texts.insert("seconds".into(), json!(times.join(", ")));
     texts.insert("samples".into(), json!(format!("{} spp", figures::count(point.samples))));
     Value::Object(texts)
 }

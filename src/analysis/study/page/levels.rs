@@ -109,6 +109,7 @@ mod tests {
         let point = |seconds: &f64| Point {
             samples: 1,
             seconds: flat(*seconds),
+            cpu_seconds: None,
             mse: flat(1.0),
             relmse: flat(1.0),
             trimmed_relmse: flat(1.0),
@@ -123,6 +124,8 @@ mod tests {
             points: times.iter().map(point).collect(),
             slope: None,
             efficiency: flat(1.0),
+            chosen: None,
+            apart: None,
             variance: "variance.exr".into(),
             ratio: None,
             notes: Vec::new(),
@@ -134,7 +137,14 @@ mod tests {
     }
 
     fn study(width: usize, height: usize, contenders: usize, times: &[f64]) -> Outcome {
-        let reference = Reference { image: "r.exr".into(), how: String::new(), own_relmse: None };
+        let reference = Reference {
+            image: "r.exr".into(),
+            how: String::new(),
+            own_relmse: None,
+            known_by: None,
+            apart: None,
+            like: Vec::new(),
+        };
         let contenders = vec![contender(times); contenders];
         let scene =
             SceneOutcome { name: "s".into(), width, height, reference, contenders, notes: Vec::new() };
@@ -142,6 +152,7 @@ mod tests {
             made_by: String::new(),
             command: String::new(),
             machine: String::new(),
+            conditions: None,
             confidence: 0.95,
             scenes: vec![scene],
         }

@@ -1,6 +1,6 @@
 //! What error is measured by, and over what it is drawn.
 
-use crate::analysis::study::outcome::{Interval, Point};
+use crate::analysis::study::outcome::{ContenderOutcome, Interval, Point, SceneOutcome};
 
 /// A measure of error.
 pub(super) struct Measure {
@@ -55,12 +55,26 @@ pub(super) struct Axis {
     pub key: &'static str,
     /// As shown.
     pub name: &'static str,
-    /// Its values.
-    pub of: fn(&Point) -> f64,
+    /// Its values; none where a contender does not say.
+    pub of: fn(&Point) -> Option<f64>,
 }
 
 /// All of them, the one to begin with first.
-pub(super) const AXES: [Axis; 2] = [
-    Axis { key: "seconds", name: "seconds", of: |point| point.seconds.mean },
-    Axis { key: "samples", name: "samples per pixel", of: |point| point.samples as f64 },
+pub(super) const AXES: [Axis; 3] = [
+    Axis { key: "seconds", name: "seconds", of: |point| Some(point.seconds.mean) },
+    Axis { key: "cpu", name: "CPU seconds", of: |point| Some(point.cpu_seconds?.mean) },
+    Axis { key: "samples", name: "samples per pixel", of: |point| Some(point.samples as f64) },
 ];
+
+impl Axis {
+    /// Those that some contender of `scene` has values on.
+    pub(super) fn all_of(scene: &SceneOutcome) -> Vec<&'static Self> {
+        let has = |axis: &&Self| scene.contenders.iter().any(|contender| axis.is_known(contender));
+        AXES.iter().filter(has).collect()
+    }
+
+    /// True if `contender` has a value on it at every budget: a curve with gaps would mislead.
+    pub(super) fn is_known(&self, contender: &ContenderOutcome) -> bool {
+        contender.points.iter().all(|point| (self.of)(point).is_some())
+    }
+}

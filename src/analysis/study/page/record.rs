@@ -103,13 +103,15 @@ pub(super) fn files(outcome: &Outcome, page: &Page<'_>) -> Result<[(&'static str
 }
 
 fn markdown(outcome: &Outcome) -> String {
-    let Outcome { made_by, command, machine, .. } = outcome;
+    let Outcome { made_by, command, machine, conditions, .. } = outcome;
+    let conditions =
+        conditions.as_ref().map_or(String::new(), |known| format!(" Measured {}", known.sentence()));
     format!(
         "# Error against run time\n\n\
          ![relMSE against seconds, both axes logarithmic, a panel for each scene](convergence.svg)\n\n\
          Means over seeds with their intervals; the dashed line is the reference's own error. Below, after about the same \
          time:\n\n![each scene's reference, and its image by each contender](convergence_strips.svg)\n\n\
-         {made_by}; {machine}.\n\n```\n{command}\n```\n\n```\n{}\n```\n",
+         {made_by}; {machine}.{conditions}\n\n```\n{command}\n```\n\n```\n{}\n```\n",
         table::text(outcome).trim_end()
     )
 }

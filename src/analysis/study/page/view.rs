@@ -9,7 +9,10 @@ use super::{
     tone,
 };
 use crate::{
-    analysis::study::outcome::{ContenderOutcome, Interval, Outcome, Point, SceneOutcome},
+    analysis::study::{
+        outcome::{Chosen, Conditions, ContenderOutcome, Interval, Outcome, Point, SceneOutcome},
+        trust,
+    },
     error::{Error, Result},
 };
 use askama::Template;
@@ -23,7 +26,6 @@ pub(super) struct Page<'a> {
     pub(super) scenes: Vec<SceneView<'a>>,
     contenders: Vec<&'a str>,
     measures: &'static [Measure],
-    axes: &'static [Axis],
     pub(super) tones: String,
     data: String,
 }
@@ -37,7 +39,6 @@ impl<'a> Page<'a> {
             scenes: scenes.map(|(index, _)| SceneView::new(folder, outcome, index)).collect::<Result<_>>()?,
             contenders: names(outcome),
             measures: &MEASURES,
-            axes: &AXES,
             tones: tone::table(),
             data: data::json(outcome)?,
         })
@@ -72,6 +73,11 @@ impl<'a> Page<'a> {
     fn confidence(&self) -> String {
         let percent = (1000.0 * self.outcome.confidence).round() / 10.0;
         format!("{percent} %")
+    }
+
+    /// When it was made, and what else the machine did.
+    fn conditions(&self) -> Option<String> {
+        self.outcome.conditions.as_ref().map(Conditions::sentence)
     }
 
     fn hue(&self, series: &usize) -> usize {
@@ -142,9 +148,11 @@ pub(super) struct SceneView<'a> {
     pub(super) scene: &'a SceneOutcome,
     pub(super) rows: Vec<Row<'a>>,
     pub(super) charts: Vec<ChartView>,
+    axes: Vec<&'static Axis>,
     biases: Vec<BiasView>,
     pub(super) strips: Strips,
-    notes: Vec<String>,
+    trust: Vec<String>,
+    notes: Vec<Notes<'a>>,
 }
 
 impl<'a> SceneView<'a> {
@@ -156,26 +164,42 @@ impl<'a> SceneView<'a> {
             scene,
             rows: contenders.map(|(series, contender)| Row::new(scene, series, contender)).collect(),
             charts: charts(scene)?,
+            axes: Axis::all_of(scene),
             biases: BiasView::all(scene)?,
             strips: Strips::new(folder, outcome, scene)?,
+            trust: trust::sentences(scene, figures::number),
             notes: notes(scene),
         })
     }
 }
 
 impl SceneView<'_> {
-    fn own(&self) -> Option<String> {
-        self.scene.reference.own_relmse.map(figures::number)
+    fn has_own(&self) -> bool {
+        self.scene.reference.own_relmse.is_some()
+    }
+
+    /// Processor times are known.
+    fn has_cpu(&self) -> bool {
+        self.scene.contenders.iter().flat_map(|contender| &contender.points).any(|p| p.cpu_seconds.is_some())
     }
 }
 
-/// What a reader must know to trust the curves.
-fn notes(scene: &SceneOutcome) -> Vec<String> {
-    let reported = scene
-        .contenders
-        .iter()
-        .flat_map(|contender| contender.notes.iter().map(|note| format!("{}: {note}.", contender.name)));
-    scene.notes.iter().map(|note| format!("{note}.")).chain(reported).collect()
+/// What a reader must know of a contender to trust its curves.
+struct Notes<'a> {
+    series: usize,
+    name: &'a str,
+    chosen: Option<String>,
+    notes: &'a [String],
+}
+
+/// Of every contender of which there is something to say.
+fn notes<'a>(scene: &'a SceneOutcome) -> Vec<Notes<'a>> {
+    let of = |(series, contender): (usize, &'a ContenderOutcome)| {
+        let ContenderOutcome { name, chosen, notes, .. } = contender;
+        Notes { series, name, chosen: chosen.as_ref().map(Chosen::sentence), notes }
+    };
+    let all = scene.contenders.iter().enumerate().map(of);
+    all.filter(|of| of.chosen.is_some() || !of.notes.is_empty()).collect()
 }
 
 /// Curves by one measure over one axis.
@@ -186,7 +210,8 @@ pub(super) struct ChartView {
 }
 
 fn charts(scene: &SceneOutcome) -> Result<Vec<ChartView>> {
-    let kinds = MEASURES.iter().flat_map(|measure| AXES.iter().map(move |axis| (measure, axis)));
+    let axes = Axis::all_of(scene);
+    let kinds = MEASURES.iter().flat_map(|measure| axes.iter().map(move |axis| (measure, *axis)));
     let drawn =
         |(measure, axis)| Ok(ChartView { measure, axis, svg: Chart::new(scene, measure, axis).svg()? });
     kinds.map(drawn).collect()
@@ -227,6 +252,12 @@ impl<'a> Row<'a> {
 
     fn samples(&self, point: &Point) -> String {
         figures::count(point.samples)
+    }
+
+    /// Processor time.
+    fn cpu(&self, point: &Point) -> Cell {
+        let none = Cell { mean: "–".into(), ends: String::new() };
+        point.cpu_seconds.as_ref().map_or(none, cell)
     }
 
     fn load(&self) -> String {
