@@ -30,6 +30,7 @@ mod pixel;
 mod plan;
 mod progress;
 mod provenance;
+mod python;
 mod render;
 mod report;
 mod scene;

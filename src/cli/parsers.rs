@@ -159,6 +159,15 @@ pub(super) fn crop(text: &str) -> Result<Crop, String> {
     parts.ok_or_else(|| "expected WIDTHxHEIGHT+X+Y in pixels, such as 320x240+640+0".to_owned())
 }
 
+/// The same, or X,Y,WIDTH,HEIGHT.
+pub(super) fn crop_of_image(text: &str) -> Result<Crop, String> {
+    let numbers: Option<Vec<u32>> = text.split(',').map(|part| part.parse().ok()).collect();
+    match numbers.as_deref() {
+        Some([x, y, width, height]) => crop(&format!("{width}x{height}+{x}+{y}")),
+        _ => crop(text),
+    }
+}
+
 pub(super) fn duration(text: &str) -> Result<Duration, String> {
     let expected = || "expected a time above 0, such as 90, 90s, 5m or 1.5h".to_owned();
     let (number, seconds) = match text.char_indices().next_back() {

@@ -53,11 +53,17 @@ impl Display {
     /// `pixels` (linear sRGB) as 8-bit sRGB, three bytes each. NaN and negative channels are shown black, infinite ones
     /// white.
     pub fn bytes(self, pixels: &[Spectrum]) -> Vec<u8> {
+        self.bytes_like(pixels, pixels)
+    }
+
+    /// The same, by the curve that suits `model`: images of one scene side by side are shown alike, whatever their noise.
+    pub fn bytes_like(self, pixels: &[Spectrum], model: &[Spectrum]) -> Vec<u8> {
         let scale = self.stops.exp2() as f32;
-        let exposed: Vec<Spectrum> = pixels.iter().map(|pixel| shown(*pixel * scale)).collect();
+        let expose = |pixels: &[Spectrum]| pixels.iter().map(|pixel| shown(*pixel * scale)).collect();
+        let exposed: Vec<Spectrum> = expose(pixels);
         match self.view {
             View::Standard => {
-                let curve = ToneCurve::of(&exposed);
+                let curve = ToneCurve::of(&expose(model));
                 bytes(&exposed, |pixel| curve.map(pixel))
             }
             View::Agx => {

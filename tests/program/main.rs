@@ -15,6 +15,7 @@ mod diff;
 mod display;
 mod errors;
 mod explain;
+mod figure;
 mod flights;
 mod gather;
 mod grouping;

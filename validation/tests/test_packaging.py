@@ -14,7 +14,7 @@ from tyndall import program
 from validation.places import CROSSCHECK, PYTHON, ROOT
 
 PROJECT: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text())
-OF_EXTRAS = {"pyoidn", "mitsuba", "scipy"}
+OF_EXTRAS = {"pyoidn", "matplotlib", "mitsuba", "scipy"}
 """What is imported where it is needed, and said to be missing where it is."""
 
 
@@ -30,7 +30,8 @@ def test_what_is_imported_is_required() -> None:
     found = {name for file in (PYTHON / "tyndall").glob("*.py") for name in imported(file)}
     required = {line.partition(">=")[0] for line in PROJECT["project"]["dependencies"]}
     assert found - set(sys.stdlib_module_names) - {"tyndall"} == required | OF_EXTRAS
-    assert "pyoidn" in PROJECT["project"]["optional-dependencies"]["denoise"][0]
+    extras = PROJECT["project"]["optional-dependencies"]
+    assert "pyoidn" in extras["denoise"][0] and "matplotlib" in extras["figure"][0]
 
 
 def test_the_wheel_holds_the_package_and_the_program() -> None:

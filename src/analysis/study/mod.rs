@@ -8,6 +8,7 @@ pub mod clock;
 pub mod conditions;
 pub mod contender;
 pub mod external;
+pub mod figure;
 pub mod outcome;
 pub mod page;
 pub mod plan;

@@ -3,7 +3,7 @@
 use crate::analysis::study::outcome::Interval;
 
 /// Three significant digits: 0.00123, 45.6, 1.23×10⁻⁵. What is no number is a dash, what is beyond all numbers ∞.
-pub(super) fn number(value: f64) -> String {
+pub(in crate::analysis::study) fn number(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
     }
@@ -39,7 +39,7 @@ pub(super) fn power_of_ten(exponent: i32) -> String {
 }
 
 /// A time with its unit.
-pub(super) fn seconds(value: f64) -> String {
+pub(in crate::analysis::study) fn seconds(value: f64) -> String {
     format!("{} s", number(value))
 }
 

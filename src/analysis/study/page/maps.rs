@@ -7,7 +7,7 @@ use crate::{
 };
 
 /// The squared error of each pixel over the reference's square: its mean over the image is relMSE.
-pub(super) fn errors(image: &[Spectrum], reference: &[Spectrum]) -> Vec<f64> {
+pub(in crate::analysis::study) fn errors(image: &[Spectrum], reference: &[Spectrum]) -> Vec<f64> {
     let to = Relative::to(reference, 3);
     means(image, reference, |x, r| to.square((x - r).powi(2), r))
 }

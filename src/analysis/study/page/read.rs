@@ -11,7 +11,7 @@ use crate::{
 use std::path::Path;
 
 /// The study in the file at `path`: at least one scene, in each at least one contender with at least one budget.
-pub(super) fn outcome(path: &Path) -> Result<Outcome> {
+pub(in crate::analysis::study) fn outcome(path: &Path) -> Result<Outcome> {
     let remedy = "give the folder of a study, as tyndall study or python3 -m validation efficiency leaves it";
     let text = std::fs::read_to_string(path)
         .map_err(|error| Error::new(path.display(), "the numbers of a study", error.to_string(), remedy))?;
@@ -55,7 +55,7 @@ fn gap_in_scene(scene: &SceneOutcome) -> Option<(&'static str, String)> {
 }
 
 /// The pixels of an image that has the size of `scene`, of any values.
-pub(super) fn image(path: &Path, scene: &SceneOutcome) -> Result<Vec<Spectrum>> {
+pub(in crate::analysis::study) fn image(path: &Path, scene: &SceneOutcome) -> Result<Vec<Spectrum>> {
     let expected = || format!("an image of {} x {} pixels", scene.width, scene.height);
     let remedy = "run the study again, or restore its images";
     let picture = picture::read(path).map_err(|error| Error {
