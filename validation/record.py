@@ -23,6 +23,7 @@ from validation.stability.kept import binary
 FOLDER = OUTPUT / "record"
 ACCEPTED = REPORTS / "accepted.md"
 ACCEPTANCE = "# Reports that later sources leave valid\n\n| report | sources | why |\n|---|---|---|\n"
+GPU = " ".join(f"scenes/efficiency/{name}.xml" for name in ("fog_room", "dusty_window", "skylight", "headlights", "glass_fog_sky", "plume", "door_ajar"))
 CURVES = "scenes/lampbox_down.xml scenes/lampbox_up.xml scenes/efficiency/plume.xml scenes/efficiency/cloud.xml scenes/efficiency/pool.xml scenes/foggy_room.json"
 
 
@@ -36,6 +37,15 @@ class Part:
     minutes: int
     study: bool = False
     """The page of its study is the report."""
+    found: str = ""
+    """What the command calls its report, where that is another name."""
+    needs: str = ""
+    """A program that not every machine has."""
+
+    @property
+    def is_possible(self) -> bool:
+        """Here."""
+        return not self.needs or shutil.which(self.needs) is not None
 
     def run(self, name: str) -> bool:
         """Renews the report; true if what it checks holds. What an interrupted run of this very program left is taken over."""
@@ -43,7 +53,8 @@ class Part:
         if not stamp.is_file() or stamp.read_text() != binary():
             shutil.rmtree(folder, ignore_errors=True)
             write_text(stamp, binary())
-        (folder / f"{name}.md").unlink(missing_ok=True)
+        found = self.found or name
+        (folder / f"{found}.md").unlink(missing_ok=True)
         command = [sys.executable, "-m", "validation", *shlex.split(self.command), "--output", str(folder)]
         code = subprocess.run(command, cwd=ROOT).returncode
         if code > 1:
@@ -51,7 +62,7 @@ class Part:
         if self.study:
             self.draw(folder / f"{name}.md")
         for end in self.ends:
-            write_text(REPORTS / f"{name}{end}", (folder / f"{name}{end}").read_text())
+            write_text(REPORTS / f"{name}{end}", (folder / f"{found}{end}").read_text())
         return code == 0
 
     def draw(self, report: Path) -> None:
@@ -66,7 +77,10 @@ PARTS = {
     "efficiency": Part("efficiency --seeds 6 --seconds 0.6 --reference-seconds 12 --against pt,volpath,volpathmis", (".md", ".json"), 20),
     "convergence": Part(f"efficiency {CURVES} --size 96x96 --points 5 --seeds 6 --seconds 1 --against pt,lt,volpath,volpathmis", (".md", ".svg", "_strips.svg"), 20, study=True),
     "guide": Part("efficiency --suite guide --seeds 4 --seconds 3 --reference-seconds 30", (".md", ".json"), 40),
-    "growth": Part("growth", (".md", ".json"), 10),
+    "gpu": Part(f"efficiency scenes/lampbox_up.xml {GPU} --seeds 3 --seconds 0.4 --reference-seconds 5 --threads 16 --against volpath:cuda_ad_rgb", (".md",), 4, found="efficiency", needs="nvidia-smi"),
+    "intervals": Part("intervals", (".md", ".json"), 10),
+    "instructions": Part("instructions --table", (".md",), 3, needs="valgrind"),
+    "growth": Part("growth", (".md", ".json"), 10, needs="valgrind"),
     "threads": Part("growth --threads", (".md", ".json"), 2),
     "bias": Part("bias", (".md", ".json", ".svg"), 15),
     "thresholds": Part("thresholds", (".md",), 17),
@@ -96,7 +110,10 @@ def run(options: argparse.Namespace) -> bool:
     if options.accept:
         accept(options.parts or list(late), options.accept)
         return True
-    found = {} if options.tables else {name: PARTS[name].run(name) for name in options.parts or late}
+    found = {} if options.tables else {name: PARTS[name].run(name) for name in options.parts or late if PARTS[name].is_possible}
+    left = [f"{name} (no {PARTS[name].needs})" for name in late if not PARTS[name].is_possible]
+    if left:
+        print(f"not possible here: {', '.join(left)}")
     tables.renew()
     print("\n".join(f"{name:12} {'holds' if holds else 'DOES NOT HOLD'}" for name, holds in found.items()))
     return all(found.values())
