@@ -10,6 +10,7 @@ mod fill;
 pub mod observe;
 pub mod pass;
 mod ready;
+mod splats;
 
 use crate::{
     sampling::Sampler,

@@ -7,6 +7,7 @@ use super::{
     faults::{Cause, Fault, guarded},
     observe::BlockObserver,
     pass::Outcome,
+    splats::Splats,
 };
 use crate::{
     film::Film,
@@ -68,7 +69,7 @@ impl<'a, P: Profile> Ready<'a, P> {
         sights: &mut dyn Iterator<Item = Sight>,
     ) -> Outcome {
         let mut light =
-            Splatted { film: self.film, values: Vec::new(), sample: pass as u64, faults: Vec::new() };
+            Splatted { film: self.film, splats: Splats::default(), sample: pass as u64, faults: Vec::new() };
         let mut cache = LightCache::new(P::Channels::COUNT);
         walks.for_each(|walk| self.trace_light(pass, walk, &mut cache, &mut light));
         let mut faults = light.faults;
@@ -79,7 +80,7 @@ impl<'a, P: Profile> Ready<'a, P> {
             }
             (pixel as u32, sum.radiance * weight)
         });
-        Outcome::of_parts(camera.collect(), light.values, faults)
+        Outcome::of_parts(camera.collect(), light.splats.into_values(), faults)
     }
 
     /// Traces light subpath number `walk` of `pass` into `cache`.
@@ -213,7 +214,7 @@ impl<P: Profile> Ready<'_, P> {
 /// What light subpaths contributed to the film.
 struct Splatted<'a> {
     film: &'a Film,
-    values: Vec<(u32, Spectrum)>,
+    splats: Splats,
     sample: u64,
     faults: Vec<Fault>,
 }
@@ -231,8 +232,8 @@ impl Observer for Splatted<'_> {
             let cause = Cause::NotFinite { s, t };
             return self.faults.push(Fault { cause, sample: self.sample, pixel: None });
         }
-        let values = &mut self.values;
-        self.film.spread(film, *value, |pixel, value| values.push((pixel as u32, value)));
+        let splats = &mut self.splats;
+        self.film.spread(film, *value, |pixel, value| splats.push(pixel as u32, value));
     }
 }
 
