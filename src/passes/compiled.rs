@@ -78,6 +78,8 @@ pub fn choose<'a>(
                 ProfileName::Vacuum => Ready::<Guided<Vacuum>>::prepare,
                 ProfileName::Fog => Ready::<Guided<Fog>>::prepare,
                 ProfileName::Bounded | ProfileName::Smoke => Ready::<Guided<Smoke>>::prepare,
+                ProfileName::ChromaticFog => Ready::<Guided<ChromaticFog>>::prepare,
+                // Each compiled for itself would save 2 % at most.
                 _ => Ready::<Guided<Everything>>::prepare,
             }
         }

@@ -8,11 +8,10 @@ use std::path::Path;
 use tyndall::{
     format,
     passes::{Settings, budget::Budget},
-    profiles::ProfileName,
     sampling::Sampler,
     scene::build::{self, Setup},
     settings::Overrides,
-    transport::needs::Needs,
+    transport::{needs::Needs, profiles::ProfileName},
 };
 
 fn main() {

@@ -60,6 +60,8 @@ fn weights_of_guided_paths() {
     all("vacuum", examine::<Guided<Vacuum>>("guided, in a vacuum", &vacuum, options, 600));
     let open = build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SUN, SKY, LAMP]);
     all("open", examine::<Guided<Everything>>("guided, in the open", &open, options, 1000));
+    let colours = build(&[CHROMATIC_FOG, INSIDE, ROOM, LAMP, BALL]);
+    all("colours", examine::<Guided<ChromaticFog>>("guided, in colours", &colours, options, 600));
     let waves = build(&[OUTSIDE, WAVES, GROUND, LAMP, BULB]);
     all("waves", examine::<Guided<Smoke>>("guided, in waves", &waves, options, 600));
     let fire = build(&[OUTSIDE, CHROMATIC_FIRE, GROUND, SUN, BULB]);
