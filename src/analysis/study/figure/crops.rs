@@ -1,4 +1,4 @@
-//! Parts of an image that tell contenders apart: where their errors differ most.
+//! Parts of an image that tell contenders apart: where their errors differ most, rather where there is something to see.
 
 /// Side of a crop, over the shorter side of the image.
 const SIDE: f64 = 0.24;
@@ -9,23 +9,28 @@ const WORST: f64 = 1.0;
 /// The second crop shows another contender at its worst where that differs by so much of what the first shows.
 const OTHER: f64 = 0.5;
 
+/// A plain part counts so much, over one whose quarters differ by their mean.
+const PLAIN: f64 = 0.5;
+
 /// A crop and what it shows.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     corner: [usize; 2],
-    /// Between the errors of the worst contender and the best.
+    /// Between the errors of the worst contender and the best, times what there is to see.
     spread: f64,
     worst: usize,
 }
 
-/// Two crops, as column, row, width and height, from the relative squared `errors` of every pixel by each contender; one, where
-/// there is no room for two.
-pub(super) fn choose([width, height]: [usize; 2], errors: &[Vec<f64>]) -> Vec<[usize; 4]> {
+/// Two crops, as column, row, width and height, from what there is to see, by its `luminance`, and the relative squared `errors`
+/// of every pixel by each contender; one, where there is no room for two.
+pub(super) fn choose([width, height]: [usize; 2], luminance: &[f64], errors: &[Vec<f64>]) -> Vec<[usize; 4]> {
     let side = ((SIDE * width.min(height) as f64).round() as usize).max(1);
-    let sums: Vec<Sums> = errors.iter().map(|errors| Sums::of(width, errors)).collect();
+    let clamped = |error: &f64| if error.is_nan() { WORST } else { error.min(WORST) };
+    let sums: Vec<Sums> = errors.iter().map(|errors| Sums::of(width, errors.iter().map(clamped))).collect();
+    let seen = Sums::of(width, luminance.iter().copied());
     let places = |length: usize| (0..=length - side).step_by((side / STEP).max(1));
     let corners = places(height).flat_map(|y| places(width).map(move |x| [x, y]));
-    let mut all: Vec<Candidate> = corners.map(|corner| Candidate::at(corner, side, &sums)).collect();
+    let mut all: Vec<Candidate> = corners.map(|corner| Candidate::at(corner, side, &sums, &seen)).collect();
     // The order of equal ones stays.
     all.sort_by(|a, b| b.spread.total_cmp(&a.spread));
     let second = [side + side / 4, side].into_iter().find_map(|gap| second(&all, gap));
@@ -44,13 +49,14 @@ fn second(all: &[Candidate], gap: usize) -> Option<&Candidate> {
 }
 
 impl Candidate {
-    fn at(corner: [usize; 2], side: usize, sums: &[Sums]) -> Self {
+    fn at(corner: [usize; 2], side: usize, sums: &[Sums], seen: &Sums) -> Self {
         let errors: Vec<f64> = sums.iter().map(|sums| sums.mean(corner, side).sqrt()).collect();
         let worst = (0..errors.len()).max_by(|a, b| errors[*a].total_cmp(&errors[*b])).unwrap_or(0);
         let least = errors.iter().copied().fold(f64::INFINITY, f64::min);
         let most = errors.get(worst).copied().unwrap_or(0.0);
         // A contender alone is looked at where it is worst.
-        Self { corner, spread: if errors.len() > 1 { most - least } else { most }, worst }
+        let spread = if errors.len() > 1 { most - least } else { most };
+        Self { corner, spread: spread * (PLAIN + seen.contrast(corner, side).min(1.0)), worst }
     }
 }
 
@@ -61,13 +67,12 @@ struct Sums {
 }
 
 impl Sums {
-    fn of(width: usize, errors: &[f64]) -> Self {
+    fn of(width: usize, of: impl ExactSizeIterator<Item = f64>) -> Self {
         let stride = width + 1;
-        let mut values = vec![0.0; stride * (errors.len() / width + 1)];
-        for (pixel, error) in errors.iter().enumerate() {
+        let mut values = vec![0.0; stride * (of.len() / width + 1)];
+        for (pixel, value) in of.enumerate() {
             let at = (pixel / width + 1) * stride + pixel % width + 1;
-            let error = if error.is_nan() { WORST } else { error.min(WORST) };
-            values[at] = error + values[at - 1] + values[at - stride] - values[at - stride - 1];
+            values[at] = value + values[at - 1] + values[at - stride] - values[at - stride - 1];
         }
         Self { stride, values }
     }
@@ -76,6 +81,19 @@ impl Sums {
         let at = |x: usize, y: usize| self.values[y * self.stride + x];
         let sum = at(x + side, y + side) - at(x, y + side) - at(x + side, y) + at(x, y);
         (sum / (side * side) as f64).max(0.0)
+    }
+
+    /// Between the means of its brightest quarter and its darkest, over its own: noise hardly counts.
+    fn contrast(&self, [x, y]: [usize; 2], side: usize) -> f64 {
+        let half = side / 2;
+        if half == 0 {
+            return 0.0;
+        }
+        let means =
+            [[x, y], [x + half, y], [x, y + half], [x + half, y + half]].map(|at| self.mean(at, half));
+        let [least, most] =
+            [means.iter().copied().fold(f64::INFINITY, f64::min), means.iter().copied().fold(0.0, f64::max)];
+        if most > 0.0 { (most - least) / (0.5 * (most + least)) } else { 0.0 }
     }
 }
 
@@ -94,12 +112,17 @@ mod tests {
 
     #[test]
     fn crops_are_where_contenders_differ() {
-        let found = choose([40, 30], &[error_at([5, 6]), error_at([25, 20])]);
+        let plain = [1.0; 1200];
+        let found = choose([40, 30], &plain, &[error_at([5, 6]), error_at([25, 20])]);
         assert_eq!(found, [[5, 6, 7, 7], [25, 20, 7, 7]]);
         // What is wrong with both tells nothing.
         let both: Vec<f64> = error_at([5, 6]).iter().zip(error_at([25, 20])).map(|(a, b)| a + b).collect();
-        assert_eq!(choose([40, 30], &[error_at([5, 6]), both])[0], [25, 20, 7, 7]);
-        assert_eq!(choose([40, 30], &[error_at([9, 9])])[0], [9, 9, 7, 7]);
+        assert_eq!(choose([40, 30], &plain, &[error_at([5, 6]), both])[0], [25, 20, 7, 7]);
+        assert_eq!(choose([40, 30], &plain, &[error_at([9, 9])])[0], [9, 9, 7, 7]);
+        // Of two that tell as much, the one with an edge in it.
+        let both: Vec<f64> = error_at([5, 6]).iter().zip(error_at([25, 20])).map(|(a, b)| a + b).collect();
+        let edge: Vec<f64> = (0..1200).map(|pixel| if pixel % 40 < 28 { 1.0 } else { 3.0 }).collect();
+        assert_eq!(choose([40, 30], &edge, &[both])[0], [25, 20, 7, 7]);
     }
 
     #[test]
@@ -107,7 +130,7 @@ mod tests {
         for (size, errors) in
             [([1, 1], vec![f64::NAN]), ([3, 1], vec![f64::INFINITY, 0.0, 1e300]), ([2, 2], vec![0.0; 4])]
         {
-            let crops = choose(size, &[errors.clone(), errors]);
+            let crops = choose(size, &errors, &[errors.clone(), errors.clone()]);
             assert!(
                 !crops.is_empty()
                     && crops.iter().all(|[x, y, w, h]| x + w <= size[0] && y + h <= size[1] && *w > 0)

@@ -10,7 +10,7 @@ use super::{
 use crate::{
     error::{Error, Result},
     film::view::Display,
-    math::Spectrum,
+    math::{Spectrum, SpectrumExt},
     settings::Crop,
 };
 use image::ExtendedColorType;
@@ -122,7 +122,8 @@ fn row(folder: &Path, scene: &SceneOutcome, wanted: &Wanted<'_>, to: &Path, inde
     let crops = match wanted.crops {
         [] => {
             let errors: Vec<_> = images.iter().map(|image| maps::errors(image, &reference)).collect();
-            crops::choose(size, &errors)
+            let luminance: Vec<f64> = reference.iter().map(|pixel| pixel.luminance().into()).collect();
+            crops::choose(size, &luminance, &errors)
         }
         crops => crops.iter().map(|crop| within(crop, scene)).collect::<Result<_>>()?,
     };
