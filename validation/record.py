@@ -79,7 +79,7 @@ PARTS = {
     "guide": Part("efficiency --suite guide --seeds 4 --seconds 3 --reference-seconds 30", (".md", ".json"), 40),
     "gpu": Part(f"efficiency scenes/lampbox_up.xml {GPU} --seeds 3 --seconds 0.4 --reference-seconds 5 --threads 16 --against volpath:cuda_ad_rgb", (".md",), 4, found="efficiency", needs="nvidia-smi"),
     "intervals": Part("intervals", (".md", ".json"), 10),
-    "instructions": Part("instructions --table", (".md",), 3, needs="valgrind"),
+    "instructions": Part("instructions --table", (".md",), 8, needs="valgrind"),
     "growth": Part("growth", (".md", ".json"), 10, needs="valgrind"),
     "threads": Part("growth --threads", (".md", ".json"), 2),
     "bias": Part("bias", (".md", ".json", ".svg"), 15),

@@ -3,7 +3,10 @@
 use crate::{
     math::Vec3,
     scene::lights::{Densities, EmissionSample, EmitterSample, Lights, Start, Starts},
-    transport::{Event, Leg, observer::Meeting},
+    transport::{
+        Event, Leg,
+        observer::{Meeting, put},
+    },
 };
 
 /// Follows walks, to tell where the light of each contribution starts.
@@ -71,8 +74,10 @@ impl<'a> Follower<'a> {
         self.last = event.position();
     }
 
-    pub(super) fn keep(&mut self) {
-        self.kept[self.hero].extend(self.current);
+    pub(super) fn keep(&mut self, place: usize) {
+        if let Some(current) = self.current {
+            put(&mut self.kept[self.hero], place, current);
+        }
     }
 
     /// How often light subpaths start like the one at hand without what was learnt, over how often they do.

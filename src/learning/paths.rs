@@ -6,7 +6,9 @@ use crate::{
     math::{Vec2, Vec3},
     scene::Scene,
     transport::{
-        Event, Interaction, Scattering, Strategies, observer::Meeting, profiles::Everything,
+        Event, Interaction, Scattering, Strategies,
+        observer::{Meeting, put},
+        profiles::Everything,
         strategy::StrategyKind,
     },
 };
@@ -115,8 +117,10 @@ impl Tracks {
     }
 
     /// The last vertex was added to the cache of `hero`.
-    pub(super) fn keep(&mut self, hero: usize) {
-        self.kept[hero].extend(self.last);
+    pub(super) fn keep(&mut self, hero: usize, place: usize) {
+        if let Some(last) = self.last {
+            put(&mut self.kept[hero], place, last);
+        }
     }
 
     /// The path that walks of `hero` made; none where nothing is to be learnt from it.

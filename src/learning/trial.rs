@@ -294,10 +294,10 @@ impl Observer for Recorder<'_> {
         }
     }
 
-    fn keep(&mut self) {
-        self.follower.keep();
+    fn keep(&mut self, place: usize) {
+        self.follower.keep(place);
         if let Some(tracks) = &mut self.tracks {
-            tracks.keep(self.follower.hero);
+            tracks.keep(self.follower.hero, place);
         }
     }
 

@@ -24,7 +24,7 @@ use crate::{
     },
     transport::{
         Contribution, Event, Interaction,
-        observer::{Meeting, Observer},
+        observer::{Meeting, Observer, put},
     },
 };
 use std::cell::Cell;
@@ -208,8 +208,9 @@ impl Observer for LightPathObserver<'_> {
         self.trail = self.trail.with(&event);
     }
 
-    fn keep(&mut self) {
-        self.kept[self.hero].push(Kept { light: self.light, collisions: self.trail.collisions });
+    fn keep(&mut self, place: usize) {
+        let kept = Kept { light: self.light, collisions: self.trail.collisions };
+        put(&mut self.kept[self.hero], place, kept);
     }
 
     fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_>, contribution: Option<&Contribution>) {

@@ -5,6 +5,10 @@
 use super::{mis::MisSums, vertex::Vertex};
 use crate::sampling::Stream;
 
+/// Vertices that a cache of draws holds of a hero channel, at most. Where some walks have millions, in thick white media, an even
+/// choice of them stands for all (algorithm R: Vitter 1985, "Random Sampling with a Reservoir").
+const MOST: usize = 1 << 18;
+
 /// Vertices of light subpaths, those of one hero channel together.
 #[derive(Clone, Debug)]
 pub struct LightCache<S: MisSums> {
@@ -15,6 +19,8 @@ pub struct LightCache<S: MisSums> {
 #[derive(Clone, Debug)]
 struct Pool<S: MisSums> {
     vertices: Vec<Vertex<S>>,
+    /// Those that `vertices` stand for.
+    count: usize,
     /// Light subpaths that could have left vertices here, times the probability that a vertex was kept.
     walks: f32,
 }
@@ -37,7 +43,7 @@ pub struct Partners<'a, S: MisSums> {
     /// True if they are drawn; else each has its turn.
     is_drawn: bool,
     /// The factor that makes the sum over these connections an estimate of that over all vertices of one light subpath:
-    /// vertices / (connections x walks) where they are drawn.
+    /// all vertices / (connections x walks) where they are drawn.
     pub scale: f32,
 }
 
@@ -62,7 +68,7 @@ impl<'a, S: MisSums> Partners<'a, S> {
 impl<S: MisSums> LightCache<S> {
     /// No walks, for `heroes` hero channels.
     pub fn new(heroes: usize) -> Self {
-        let pool = |_| Pool { vertices: Vec::new(), walks: 0.0 };
+        let pool = |_| Pool { vertices: Vec::new(), count: 0, walks: 0.0 };
         Self { pools: (0..heroes).map(pool).collect(), walks: Vec::new() }
     }
 
@@ -72,10 +78,26 @@ impl<S: MisSums> LightCache<S> {
         self.pools[hero].walks += keep;
     }
 
-    /// Keeps a vertex.
+    /// Keeps a vertex, as one of all where `keeps_all`; says where it lies.
     #[inline]
-    pub fn push(&mut self, hero: usize, vertex: Vertex<S>) {
-        self.pools[hero].vertices.push(vertex);
+    pub fn push(
+        &mut self,
+        hero: usize,
+        vertex: Vertex<S>,
+        keeps_all: bool,
+        stream: &mut Stream,
+    ) -> Option<usize> {
+        let Pool { vertices, count, .. } = &mut self.pools[hero];
+        *count += 1;
+        if vertices.len() < MOST || keeps_all {
+            vertices.push(vertex);
+            return Some(vertices.len() - 1);
+        }
+        let place = stream.below(*count);
+        vertices.get_mut(place).map(|old| {
+            *old = vertex;
+            place
+        })
     }
 
     /// `connections` uniform draws from the vertices for camera subpaths of `hero`.
@@ -85,7 +107,7 @@ impl<S: MisSums> LightCache<S> {
         if pool.vertices.is_empty() || connections == 0 {
             return Partners::NONE;
         }
-        let scale = pool.vertices.len() as f32 / (connections as f32 * pool.walks);
+        let scale = pool.count as f32 / (connections as f32 * pool.walks);
         Partners { vertices: &pool.vertices, first: 0, count: connections as usize, is_drawn: true, scale }
     }
 
@@ -98,12 +120,12 @@ impl<S: MisSums> LightCache<S> {
         Partners { vertices, first, count: vertices.len(), ..Partners::NONE }
     }
 
-    /// Vertices kept in all.
+    /// Vertices that it stands for.
     pub fn len(&self) -> usize {
-        self.pools.iter().map(|pool| pool.vertices.len()).sum()
+        self.pools.iter().map(|pool| pool.count).sum()
     }
 
-    /// True if no vertex was kept.
+    /// True if there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -21,6 +21,7 @@ use crate::{
     sampling::Stream,
     scene::lights::{Densities, EmissionSample, EmitterPoint, Start},
     sensor::Projection,
+    settings::options::Connections,
     shape::Ray,
 };
 
@@ -147,8 +148,10 @@ impl<P: Profile, R: Observer> Visitor<P> for LightPath<'_, P, R> {
         }
         let keep = self.estimator.keep;
         if keep > 0.0 && (keep >= 1.0 || stream.uniform() < keep) {
-            self.cache.push(self.hero, *vertex);
-            self.observer.keep();
+            let keeps_all = self.estimator.connections == Connections::All;
+            if let Some(place) = self.cache.push(self.hero, *vertex, keeps_all, stream) {
+                self.observer.keep(place);
+            }
         }
     }
 }

@@ -121,9 +121,17 @@ pub trait Observer {
     #[inline]
     fn escape(&mut self, _arrival: &Arrival) {}
 
-    /// The last vertex of the light subpath at hand was added to the cache.
+    /// The last vertex of the light subpath at hand was put into the cache at `place`, whatever was there.
     #[inline]
-    fn keep(&mut self) {}
+    fn keep(&mut self, _place: usize) {}
+}
+
+/// Puts a `value` where the cache has a vertex.
+pub fn put<T>(all: &mut Vec<T>, place: usize, value: T) {
+    match all.get_mut(place) {
+        Some(old) => *old = value,
+        None => all.push(value),
+    }
 }
 
 /// The observer of ordinary camera subpaths: it adds up.
@@ -174,7 +182,7 @@ impl Observer for &mut (dyn Observer + '_) {
     fn escape(&mut self, arrival: &Arrival) {
         (**self).escape(arrival);
     }
-    fn keep(&mut self) {
-        (**self).keep();
+    fn keep(&mut self, place: usize) {
+        (**self).keep(place);
     }
 }

@@ -8,7 +8,7 @@ use crate::{
     scene::lights::{EmissionSample, EmitterSample, Lights, Starts},
     transport::{
         Arrival, Contribution, Event, Interaction, Leg,
-        observer::{Meeting, Observer},
+        observer::{Meeting, Observer, put},
         strategy::StrategyKind,
     },
 };
@@ -324,7 +324,7 @@ impl Observer for LightPathObserver<'_> {
     fn arrive(&mut self, event: Event<'_>) {
         self.edges = event.arrival.edges;
     }
-    fn keep(&mut self) {
-        self.kept[self.hero].push((self.walk, self.edges));
+    fn keep(&mut self, place: usize) {
+        put(&mut self.kept[self.hero], place, (self.walk, self.edges));
     }
 }

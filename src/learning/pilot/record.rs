@@ -10,7 +10,7 @@ use crate::{
     settings::options::Survival,
     transport::{
         Contribution, Event, Leg,
-        observer::{Meeting, Observer},
+        observer::{Meeting, Observer, put},
         roulette,
         strategy::StrategyKind,
     },
@@ -237,9 +237,11 @@ impl Observer for Recorder<'_> {
         self.ends.push(before.and(Ends::at(event.survival, self.survival)));
     }
 
-    fn keep(&mut self) {
-        self.follower.keep();
-        self.kept[self.follower.hero].extend(self.ends.last());
+    fn keep(&mut self, place: usize) {
+        self.follower.keep(place);
+        if let Some(ends) = self.ends.last() {
+            put(&mut self.kept[self.follower.hero], place, *ends);
+        }
         self.count(|work| &mut work.kept);
     }
 

@@ -524,20 +524,27 @@ fn walks_of_ten_thousand_vertices() {
     assert!(weighed >= 2, "a lens that looks elsewhere is all that may be missing");
 }
 
-/// n of a connection is how often a draw from the cache gives a certain vertex of a light subpath, thinned or not.
+/// n of a connection is how often a draw from the cache gives a certain vertex of a light subpath, thinned or not, and of more
+/// vertices than it holds.
 #[test]
 fn joins_are_counted_as_often_as_they_come() {
-    for (setup, thinned) in
-        [(build(&[FOG, INSIDE, ROOM, LAMP]), false), (build(&[FURNACE, INSIDE, LAMP]), true)]
-    {
+    for (setup, thinned, walks) in [
+        (build(&[FOG, INSIDE, ROOM, LAMP]), false, 20_000),
+        (build(&[FURNACE, INSIDE, LAMP]), true, 20_000),
+        (build(&[FOG, INSIDE, ROOM, LAMP]), false, 200_000),
+    ] {
         let options = Options { max_depth: Some(200), ..ALL };
         let estimator = Estimator::<Fog>::new(&setup.scene, options, Learnt::default(), SEED, 1024, 1024);
         assert_eq!(estimator.keep < 1.0, thinned);
         let mut cache = LightCache::new(1);
-        for walk in 0..20_000 {
+        for walk in 0..walks {
             let mut stream = Stream::new(1, walk, 0, Purpose::Light);
             estimator.trace_light(&mut cache, &mut Nowhere, 0, &mut stream);
         }
+        let drawn = cache.drawn(0, 1);
+        assert!(drawn.vertices().len() < cache.len() || walks == 20_000);
+        let stood_for = drawn.scale * walks as f32 * estimator.keep / cache.len() as f32;
+        assert!((stood_for - 1.0).abs() < 1e-3, "{stood_for}");
         // Every walk has a first vertex here, so of the draws this part are first vertices:
         let pool = cache.drawn(0, 1).vertices();
         let first = pool.iter().filter(|vertex| vertex.subpath.edges == 1).count() as f32 / pool.len() as f32;
