@@ -4,7 +4,10 @@
 //! the next.
 
 use crate::{
-    description::{Property, Value, transform::TransformStep},
+    description::{
+        object::{Property, Value},
+        transform::TransformStep,
+    },
     error::{Error, Result},
     math::{DMat3, DMat4, DQuat, DVec3},
 };
