@@ -12,8 +12,6 @@ from tyndall import program
 from validation import sources
 from validation.places import ROOT
 
-START, LOAD = time.monotonic(), os.getloadavg()[0]
-"""Of this process."""
 SOURCES = re.compile(r"sources ([0-9a-f]{12})")
 
 
@@ -38,8 +36,7 @@ class Made:
     def by(command: str) -> "Made":
         """Of what ends now and began with this process."""
         version = program.call([str(program.binary()), "--version"]).stdout.strip()
-        today = time.strftime("%Y-%m-%d", time.gmtime())
-        return Made(command, version, commit(), sources.digest(), today, processor(), LOAD, time.monotonic() - START)
+        return Made(command, version, COMMIT, DIGEST, TODAY, processor(), LOAD, time.monotonic() - START)
 
     def __str__(self) -> str:
         return (
@@ -57,7 +54,7 @@ def sources_of(report: Path) -> str | None:
 def commit() -> str:
     """Of this clone."""
     told = lambda *words: subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout.strip()
-    changed = " and changes" if told("status", "--porcelain", "--untracked-files=no") else ""
+    changed = " and changes" if told("status", "--porcelain", "--untracked-files=no", "src", "Cargo.lock") else ""
     return (told("rev-parse", "--short", "HEAD") or "unknown") + changed
 
 
@@ -66,3 +63,8 @@ def processor() -> str:
     information = Path("/proc/cpuinfo")
     named = (line.split(":")[1].strip() for line in information.read_text().splitlines() if line.startswith("model name")) if information.is_file() else ()
     return f"{os.cpu_count()} x {next(iter(named), platform.machine())}"
+
+
+START, LOAD, TODAY = time.monotonic(), os.getloadavg()[0], time.strftime("%Y-%m-%d", time.gmtime())
+COMMIT, DIGEST = commit(), sources.digest()
+"""All of this as the process begins: while it measures, someone may go on with the work."""

@@ -17,7 +17,7 @@ from validation import tables
 from validation.files import write_text
 from validation.made import Made, sources_of
 from validation.places import OUTPUT, REPORTS, ROOT
-from validation.sources import digest
+from validation.sources import digest, paths
 from validation.stability.kept import binary
 
 FOLDER = OUTPUT / "record"
@@ -68,7 +68,7 @@ class Part:
     def draw(self, report: Path) -> None:
         """The report of a study, with how it was made below its title."""
         program.call([str(program.binary()), "report", str(report.parent), "--record", str(report.parent)])
-        title, rest = report.read_text().split("\n", 1)
+        title, rest = report.read_text().replace(f"{ROOT}/", "").split("\n", 1)
         write_text(report, f"{title}\n\n{Made.by(f'python3 -m validation {self.command}')}.\n{rest}")
 
 
@@ -110,13 +110,23 @@ def run(options: argparse.Namespace) -> bool:
     if options.accept:
         accept(options.parts or list(late), options.accept)
         return True
-    found = {} if options.tables else {name: PARTS[name].run(name) for name in options.parts or late if PARTS[name].is_possible}
-    left = [f"{name} (no {PARTS[name].needs})" for name in late if not PARTS[name].is_possible]
-    if left:
-        print(f"not possible here: {', '.join(left)}")
+    names = [] if options.tables else options.parts or list(late)
+    if names:
+        check_program()
+    for name in names:
+        if not PARTS[name].is_possible:
+            print(f"{name:12} left as it is: there is no {PARTS[name].needs} here")
+    found = {name: PARTS[name].run(name) for name in names if PARTS[name].is_possible}
     tables.renew()
     print("\n".join(f"{name:12} {'holds' if holds else 'DOES NOT HOLD'}" for name, holds in found.items()))
     return all(found.values())
+
+
+def check_program() -> None:
+    """A report names sources: the program must not be older."""
+    newest = max(paths(), key=lambda path: path.stat().st_mtime)
+    if program.binary().stat().st_mtime < newest.stat().st_mtime:
+        raise Failure(f"{program.binary()} is older than {newest.relative_to(ROOT)}", "cargo build --release")
 
 
 def out_of_date() -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 import hashlib
 import re
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
@@ -13,15 +14,18 @@ NO_CODE = re.compile(r"^#\[cfg\(test\)\]\nmod tests \{.*|//[^\n]*|\s+", re.DOTAL
 """Tests in a file, which end it, comments, and white space."""
 
 
+def paths() -> Iterator[Path]:
+    """Its files, without tests."""
+    files = (path for part in PARTS for path in sorted((ROOT / "src" / part).rglob("*.rs")))
+    return (path for path in files if "tests" not in path.parts and path.name != "tests.rs")
+
+
 @cache
 def digest() -> str:
     """Changes whenever that code does, by more than comments."""
-    paths = (path for part in PARTS for path in sorted((ROOT / "src" / part).rglob("*.rs")))
     code = hashlib.sha256()
-    for path in paths:
-        name = path.relative_to(ROOT / "src")
-        if "tests" not in name.parts and name.name != "tests.rs":
-            code.update(f"{name}: {bare(path.read_text())}\n".encode())
+    for path in paths():
+        code.update(f"{path.relative_to(ROOT / 'src')}: {bare(path.read_text())}\n".encode())
     return code.hexdigest()[:12]
 
 
