@@ -86,7 +86,7 @@ def add_options(command: argparse.ArgumentParser) -> None:
     command.add_argument("--quick", action="store_true", help="3 seeds, short renders, and of our own only pt: ten minutes")
     command.add_argument("--ours", metavar="OPTIONS", help='the options of `tyndall render` to judge (default "--integrator bdpt", of models pt)')
     command.add_argument("--against", metavar="LIST", help=f"the others, separated by commas: any of the suite's ({known}; default: all but the variants of Mitsuba's)")
-    command.add_argument("--variant", metavar="NAME", help=f"Mitsuba's integrators by this variant besides: with {GPU}, where there is a GPU, the table has a column for it")
+    command.add_argument("--variant", metavar="NAME", help=f"compare with Mitsuba's integrators in this variant too; {GPU} needs a GPU and has a column of its own")
     command.add_argument("--contender", metavar="NAME: OPTIONS", action="append", default=[], help="another one, by options of `tyndall render`")
     command.add_argument("--points", type=int, default=1, help="budgets, each twice the one before: curves of error against time (default %(default)s)")
     command.add_argument("--seeds", type=int, help="independent renders of each contender, at least 2 (default 10; of models 4, quick 3)")

@@ -57,7 +57,7 @@ class Part:
         (folder / f"{found}.md").unlink(missing_ok=True)
         command = [sys.executable, "-m", "validation", *shlex.split(self.command), "--output", str(folder)]
         code = subprocess.run(command, cwd=ROOT).returncode
-        if code > 1:
+        if code not in (0, 1) or not (self.study or (folder / f"{found}.md").is_file()):
             return False
         if self.study:
             self.draw(folder / f"{name}.md")

@@ -16,9 +16,9 @@ SHOWN = {
     "lampbox_up": "fog, lit by way of the ceiling",
     "lampbox_down": "fog, lit directly",
     "plume": "a plume of smoke under a sky and a sun",
-    "cloud": "a white cloud under a sky",
+    "cloud": "a white cloud under a sky and a sun",
     "fog_room": "a room in fog",
-    "pool": "water, lit through its surface",
+    "pool": "murky water under a sky",
 }
 """Scenes of the README, and what they are."""
 

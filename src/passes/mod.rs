@@ -10,7 +10,7 @@ mod fill;
 pub mod observe;
 pub mod pass;
 mod ready;
-mod splats;
+pub mod splats;
 
 use crate::{
     sampling::Sampler,

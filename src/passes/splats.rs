@@ -1,14 +1,14 @@
-//! What light subpaths bring to pixels, in as much memory as there are pixels: walks in thick white media have millions of vertices,
-//! and each may be seen by the camera.
+//! What light subpaths contribute to pixels. Memory is bounded by the pixels, not by the vertices: walks in thick white media have
+//! millions of these, and the camera may see each.
 
 use crate::math::{DVec3, Spectrum};
 
-/// So many are kept one by one, in the order in which they came.
+/// So many are kept one by one, in the order in which they came: 16 MB, a thousand for each light subpath of a block.
 const FEW: usize = 1 << 20;
 
-/// Values and the pixels that they belong to.
+/// Values and the pixels that they belong to, or pixels of planes, as the caller numbers them.
 #[derive(Debug, Default)]
-pub(super) struct Splats {
+pub struct Splats {
     values: Vec<(u32, Spectrum)>,
     /// So many were left when those of each pixel were last added up.
     left: usize,
@@ -17,7 +17,7 @@ pub(super) struct Splats {
 impl Splats {
     /// One more.
     #[inline]
-    pub(super) fn push(&mut self, pixel: u32, value: Spectrum) {
+    pub fn push(&mut self, pixel: u32, value: Spectrum) {
         if self.values.len() >= FEW.max(2 * self.left) {
             self.add_up();
         }
@@ -25,7 +25,7 @@ impl Splats {
     }
 
     /// All of them.
-    pub(super) fn into_values(self) -> Vec<(u32, Spectrum)> {
+    pub fn into_values(self) -> Vec<(u32, Spectrum)> {
         self.values
     }
 

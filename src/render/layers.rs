@@ -17,6 +17,7 @@ use crate::{
         faults::{Cause, Fault, guarded},
         observe::BlockObserver,
         pass::Outcome,
+        splats::Splats,
     },
     scene::{
         Scene,
@@ -109,7 +110,7 @@ pub(super) fn block(
         compiled.observe(pass, block, &is_wanted, &mut sorted);
         let Sorted { light, camera, .. } = sorted;
         let faults = [light.faults, camera.faults].concat();
-        Outcome::of_parts(camera.values, light.values, faults)
+        Outcome::of_parts(camera.values, light.splats.into_values(), faults)
     })
 }
 
@@ -174,7 +175,7 @@ struct LightPathObserver<'a> {
     hero: usize,
     /// Every vertex in the cache, per hero channel in the cache's order.
     kept: Vec<Vec<Kept>>,
-    values: Vec<(u32, Spectrum)>,
+    splats: Splats,
     faults: Vec<Fault>,
 }
 
@@ -189,7 +190,7 @@ impl<'a> LightPathObserver<'a> {
             trail: Trail::default(),
             hero: 0,
             kept: vec![Vec::new(); heroes],
-            values: Vec::new(),
+            splats: Splats::default(),
             faults: Vec::new(),
         }
     }
@@ -224,10 +225,12 @@ impl Observer for LightPathObserver<'_> {
             _ => Component::of(self.trail.is_last_in_medium, self.trail.collisions),
         };
         let first = self.sorter.plane(self.light, component).map(|plane| plane * self.film.len());
-        let values = &mut self.values;
+        let splats = &mut self.splats;
         self.film.spread(film, *value, |pixel, value| {
-            values.push((pixel as u32, value));
-            values.extend(first.map(|first| ((first + pixel) as u32, value)));
+            splats.push(pixel as u32, value);
+            if let Some(first) = first {
+                splats.push((first + pixel) as u32, value);
+            }
         });
     }
 }

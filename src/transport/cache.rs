@@ -6,7 +6,8 @@ use super::{mis::MisSums, vertex::Vertex};
 use crate::sampling::Stream;
 
 /// Vertices that a cache of draws holds of a hero channel, at most. Where some walks have millions, in thick white media, an even
-/// choice of them stands for all (algorithm R: Vitter 1985, "Random Sampling with a Reservoir").
+/// choice of them stands for all (algorithm R: Vitter 1985, "Random Sampling with a Reservoir"). 16 times as many as are aimed at on
+/// average, so that it is rare; some 50 MB.
 const MOST: usize = 1 << 18;
 
 /// Vertices of light subpaths, those of one hero channel together.

@@ -1,6 +1,7 @@
 """Recorded numbers are of today's sources or accepted for them, and pages show what the reports say."""
 
 import re
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -36,3 +37,18 @@ def test_what_is_accepted_takes_the_place_of_what_was(tmp_path: Path, monkeypatc
     record.accept(["bias"], "a name changed")
     assert file.read_text() == record.ACCEPTANCE + f"| guide | 000000000000 | old |\n| bias | {sources.digest()} | a name changed |\n"
     assert "bias" not in record.out_of_date()
+
+
+@pytest.mark.parametrize(("code", "is_written", "expected"), [(0, True, "new"), (1, True, "new"), (1, False, "old"), (2, False, "old"), (-11, True, "old")])
+def test_a_report_is_renewed_once_it_is_whole(code: int, is_written: bool, expected: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def command(words: list[str], **_: object) -> subprocess.CompletedProcess[str]:
+        if is_written:
+            Path(words[-1], "bias.md").write_text("new")
+        return subprocess.CompletedProcess(words, code)
+
+    (tmp_path / "bias.md").write_text("old")
+    monkeypatch.setattr(record, "REPORTS", tmp_path)
+    monkeypatch.setattr(record, "FOLDER", tmp_path / "record")
+    monkeypatch.setattr(record.subprocess, "run", command)
+    assert record.Part("bias", (".md",), 1).run("bias") == (code == 0)
+    assert (tmp_path / "bias.md").read_text() == expected

@@ -2,7 +2,7 @@
 
 use super::{outcome::Conditions, store::Store};
 use crate::error::Result;
-use std::time::{SystemTime, UNIX_EPOCH};
+use jiff::Timestamp;
 use sysinfo::System;
 
 /// Beside the runs.
@@ -11,8 +11,8 @@ const FILE: &str = "runs/conditions.json";
 impl Conditions {
     /// Of a study that begins now.
     fn now() -> Self {
-        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        Self { started: utc(since.as_secs()), load_before: load(), load_after: None }
+        let started = Timestamp::now().strftime("%Y-%m-%d %H:%M UTC").to_string();
+        Self { started, load_before: load(), load_after: None }
     }
 
     /// In a sentence or two.
@@ -54,49 +54,9 @@ fn load() -> Option<[f64; 3]> {
     Some([load.one, load.five, load.fifteen])
 }
 
-/// Days of 400 years, after which dates repeat.
-const ERA: u64 = 146_097;
-
-/// Date and time of day, so many `seconds` after 1970 began: 2026-11-27 13:20 UTC.
-fn utc(seconds: u64) -> String {
-    let is_leap =
-        |year: u64| year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400));
-    let (mut year, mut day) = (1970 + seconds / 86_400 / ERA * 400, seconds / 86_400 % ERA);
-    let days_of = |year| if is_leap(year) { 366 } else { 365 };
-    while day >= days_of(year) {
-        day -= days_of(year);
-        year += 1;
-    }
-    let february = days_of(year) - 337;
-    let months = [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
-    let mut month = 0;
-    while day >= months[month] {
-        day -= months[month];
-        month += 1;
-    }
-    let (hour, minute) = (seconds / 3600 % 24, seconds / 60 % 60);
-    format!("{year}-{:02}-{:02} {hour:02}:{minute:02} UTC", month + 1, day + 1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn dates_are_those_of_the_calendar() {
-        for (seconds, date) in [
-            (0, "1970-01-01 00:00 UTC"),
-            (951_782_399, "2000-02-28 23:59 UTC"),
-            (951_782_400, "2000-02-29 00:00 UTC"),
-            (1_795_785_599, "2026-11-27 13:19 UTC"),
-            (1_798_761_599, "2026-12-31 23:59 UTC"),
-            (4_107_542_400, "2100-03-01 00:00 UTC"),
-            (12_622_780_800, "2370-01-01 00:00 UTC"),
-        ] {
-            assert_eq!(utc(seconds), date, "{seconds}");
-        }
-        assert!(utc(u64::MAX).ends_with("UTC"));
-    }
 
     #[test]
     fn what_is_not_known_is_not_said() {

@@ -19,13 +19,11 @@ const CLOSE: f64 = 1e-14;
 
 /// The matrices of a value, row major, in order.
 pub(super) fn of(value: &Value) -> impl Iterator<Item = &[f64; 16]> {
-    let Value::Transform(steps) = value else { return [].iter().filter_map(rows as fn(_) -> _) };
-    steps.iter().filter_map(rows as fn(_) -> _)
-}
-
-fn rows(step: &TransformStep) -> Option<&[f64; 16]> {
-    let TransformStep::Matrix(rows) = step else { return None };
-    Some(rows)
+    let steps: &[TransformStep] = if let Value::Transform(steps) = value { steps } else { &[] };
+    steps.iter().filter_map(|step| match step {
+        TransformStep::Matrix(rows) => Some(rows),
+        _ => None,
+    })
 }
 
 /// The same to be changed.

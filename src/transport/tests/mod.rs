@@ -524,6 +524,28 @@ fn walks_of_ten_thousand_vertices() {
     assert!(weighed >= 2, "a lens that looks elsewhere is all that may be missing");
 }
 
+/// Of more vertices than a cache holds, each is as likely to be there, whenever it came.
+#[test]
+fn a_full_cache_favours_no_vertex() {
+    let setup = build(&[FOG, INSIDE, ROOM, LAMP]);
+    let estimator = Estimator::<Fog>::new(&setup.scene, ALL, Learnt::default(), SEED, 1024, 1024);
+    let (mut traced, mut stream) = (LightCache::new(1), Stream::new(1, 0, 0, Purpose::Light));
+    estimator.trace_light(&mut traced, &mut Nowhere, 0, &mut stream);
+    let mut vertex = traced.drawn(0, 1).vertices()[0];
+    let mut cache = LightCache::new(1);
+    cache.add_walk(0, 1.0);
+    let count = 1_000_000;
+    for number in 0..count {
+        vertex.subpath.edges = number;
+        cache.push(0, vertex, false, &mut stream);
+    }
+    let kept = cache.drawn(0, 1).vertices();
+    let mean = kept.iter().map(|vertex| f64::from(vertex.subpath.edges)).sum::<f64>() / kept.len() as f64;
+    let (count, len) = (f64::from(count), kept.len() as f64);
+    let error = count * ((1.0 - len / count) / (12.0 * len)).sqrt();
+    assert!(len < count && (mean - 0.5 * count).abs() < 4.0 * error, "{mean} of {count}, error {error}");
+}
+
 /// n of a connection is how often a draw from the cache gives a certain vertex of a light subpath, thinned or not, and of more
 /// vertices than it holds.
 #[test]
