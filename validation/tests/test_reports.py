@@ -49,6 +49,6 @@ def test_a_report_is_renewed_once_it_is_whole(code: int, is_written: bool, expec
     (tmp_path / "bias.md").write_text("old")
     monkeypatch.setattr(record, "REPORTS", tmp_path)
     monkeypatch.setattr(record, "FOLDER", tmp_path / "record")
-    monkeypatch.setattr(record.subprocess, "run", command)
+    monkeypatch.setattr(subprocess, "run", command)
     assert record.Part("bias", (".md",), 1).run("bias") == (code == 0)
     assert (tmp_path / "bias.md").read_text() == expected
