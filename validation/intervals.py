@@ -271,8 +271,7 @@ def page(coverages: list[Coverage], noises: list[Noise], effort: Effort) -> str:
         f"\n{', '.join(f'{count} {verdict}' for verdict, count in sorted(verdicts.items()))}.\n",
         f"## Noise of renders\n\n{effort.renders} renders of each scene, {SIDE} x {SIDE} pixels: the noise that `tyndall render` prints (`relative_error`, the root of its mean square) "
         f"over the spread of the images over seeds. Wanted: {FAIR[0]:g} to {FAIR[1]:g}. Beside it, the median of the noise over the spread without the worst 0.1 % of pixels, where "
-        "fireflies are; and how many renders say that few bright samples carry their noise. A pixel is taken for what is around it (src/film/noise.rs): where nine pixels of ten "
-        "have found no light yet, as in `keyhole` by `pt`, that is nothing, and the noise is said to be several times what it is.\n",
+        "fireflies are; and how many renders say that few bright samples carry their noise.\n",
         "| scene | samples | spread | printed | ratio | typical | said so | |", f"|{'---|' * 8}",
         *(f"| {one.scene} | {one.spp} | {100 * one.spread:.3g} % | {100 * one.printed:.3g} % | {one.ratio:.2f} | {one.typical / one.trimmed:.2f} | "
           f"{one.doubted} of {one.seeds} | {'holds' if one.holds else 'FAILS'} |" for one in noises),

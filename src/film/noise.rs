@@ -3,13 +3,15 @@
 //! The error is that of relMSE, whose denominators are squares of the true image. A pixel's own mean is a bad stand-in for
 //! it where few samples carry much light: the sample that makes the variance makes the mean too, and the quotient of the two
 //! is at most 1, however far such samples are above what is around them. Hence a pixel's mean counts only as far as the
-//! means of its neighbours differ by more than their noise (Lee 1980); else theirs does. A small lamp in view is no such
-//! sample, which only a look there can tell: pixels that carry much of the error are looked at.
+//! means of its neighbours differ by more than their noise (Lee 1980); else theirs does, and theirs only as far as they
+//! differ from what is around them, and so on to the whole image: where nine pixels of ten have found no light yet, no nine
+//! of them say how bright the tenth is. A small lamp in view is no such sample, which only a look there can tell: pixels
+//! that carry much of the error are looked at.
 
 use crate::math::relative::Relative;
 use rayon::prelude::*;
 
-/// Pixels across and down that are compared with each other.
+/// Pixels across and down that are compared with each other, then cells of them, and so on.
 const TILE: usize = 3;
 
 /// The estimated relative error of an image.
@@ -45,9 +47,10 @@ impl Noise {
             return None;
         }
         let to = Relative::to_mean(mean);
-        let rows: Vec<&[Moments]> = moments.chunks(TILE * width.max(1)).collect();
-        let of_row = |row: &&[Moments]| content(row, width);
-        let taken: Vec<f64> = rows.par_iter().flat_map_iter(of_row).collect();
+        let pixels = Level { width, cells: moments.clone() };
+        let own =
+            |(taken, (own, _)): (&Taken, &Moments)| if own.is_finite() { taken.with(*own) } else { 0.0 };
+        let taken: Vec<f64> = pixels.taken().iter().zip(&moments).map(own).collect();
         let term = |((mean, variance), r): (&Moments, &f64)| {
             if mean.is_finite() { to.square(*variance, *r) } else { 0.0 }
         };
@@ -82,35 +85,83 @@ fn both(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
     (a.0 + b.0, a.1 + b.1)
 }
 
-/// What the pixels of up to [`TILE`] rows are taken for, in their order; 0 for those that are no numbers.
-fn content(rows: &[Moments], width: usize) -> Vec<f64> {
-    let mut taken = vec![0.0; rows.len()];
-    for first in (0..width).step_by(TILE) {
-        let columns = first..width.min(first + TILE);
-        let pixels = (0..rows.len() / width).flat_map(|y| columns.clone().map(move |x| y * width + x));
-        let pixels: Vec<usize> = pixels.filter(|pixel| rows[*pixel].0.is_finite()).collect();
-        let tile: Vec<Moments> = pixels.iter().map(|pixel| rows[*pixel]).collect();
-        pixels.iter().zip(smoothed(&tile)).for_each(|(pixel, value)| taken[*pixel] = value);
-    }
-    taken
+/// An image of moments, one for each cell of [`TILE`] x [`TILE`] pixels, cells of those, and so on.
+struct Level {
+    width: usize,
+    cells: Vec<Moments>,
 }
 
-/// What the pixels of a tile are taken for.
-fn smoothed(tile: &[Moments]) -> Vec<f64> {
-    if tile.len() < 2 {
-        return tile.iter().map(|(own, _)| *own).collect();
+impl Level {
+    /// The cells of this level's cells. One without a number has none itself.
+    fn coarser(&self) -> Self {
+        let width = self.width.div_ceil(TILE);
+        let height = (self.cells.len() / self.width).div_ceil(TILE);
+        let mean = |cell| {
+            let members = self.members(cell, width);
+            let (sum, variance) = members.iter().map(|member| self.cells[*member]).fold((0.0, 0.0), both);
+            let count = members.len() as f64;
+            (sum / count, variance / (count * count))
+        };
+        Self { width, cells: (0..width * height).into_par_iter().map(mean).collect() }
     }
-    let count = tile.len() as f64;
-    let (sum, variance) = tile.iter().copied().fold((0.0, 0.0), both);
-    let (mean, variance) = (sum / count, variance / count);
-    let spread = tile.iter().map(|(own, _)| (own - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    // The part of the spread that is no noise.
-    let content = if spread > variance { (spread - variance) / spread } else { 0.0 };
-    let of_pixel = |(own, _): &Moments| {
-        let others = (sum - own) / (count - 1.0);
-        others + content * (own - others)
-    };
-    tile.iter().map(of_pixel).collect()
+
+    /// The cells within `cell` of a level `width` across that are numbers.
+    fn members(&self, cell: usize, width: usize) -> Vec<usize> {
+        let (left, top) = (TILE * (cell % width), TILE * (cell / width));
+        let rows = top..(top + TILE).min(self.cells.len() / self.width);
+        let columns = left..(left + TILE).min(self.width);
+        let members = rows.flat_map(|y| columns.clone().map(move |x| y * self.width + x));
+        members.filter(|member| self.cells[*member].0.is_finite()).collect()
+    }
+
+    /// What each cell is taken for; those that are no numbers, for nothing.
+    fn taken(&self) -> Vec<Taken> {
+        if self.cells.len() == 1 {
+            return vec![Taken { prior: self.cells[0].0, content: 1.0 }];
+        }
+        let coarser = self.coarser();
+        let of_cell = |(cell, around): (usize, &Taken)| {
+            let members = self.members(cell, coarser.width);
+            let moments: Vec<Moments> = members.iter().map(|member| self.cells[*member]).collect();
+            members.into_iter().zip(Taken::of_cell(&moments, around)).collect::<Vec<_>>()
+        };
+        let around = coarser.taken();
+        let found: Vec<_> = around.par_iter().enumerate().flat_map_iter(of_cell).collect();
+        let mut taken = vec![Taken { prior: 0.0, content: 0.0 }; self.cells.len()];
+        found.into_iter().for_each(|(member, value)| taken[member] = value);
+        taken
+    }
+}
+
+/// What a pixel or a cell is taken for.
+#[derive(Clone, Copy)]
+struct Taken {
+    /// What its surroundings say.
+    prior: f64,
+    /// The part of how its neighbours are spread that is no noise.
+    content: f64,
+}
+
+impl Taken {
+    /// The members of a cell, which itself is taken for `around`. The other members stand for its own mean there: where
+    /// they differ from what is around them by noise alone, what is around is the better guess.
+    fn of_cell(members: &[Moments], around: &Self) -> Vec<Self> {
+        let count = members.len() as f64;
+        if members.len() < 2 {
+            return members.iter().map(|_| *around).collect();
+        }
+        let (sum, variance) = members.iter().copied().fold((0.0, 0.0), both);
+        let (mean, variance) = (sum / count, variance / count);
+        let spread = members.iter().map(|(own, _)| (own - mean).powi(2)).sum::<f64>() / (count - 1.0);
+        let content = if spread > variance { (spread - variance) / spread } else { 0.0 };
+        let prior = |(own, _): &Moments| around.with((sum - own) / (count - 1.0));
+        members.iter().map(|own| Self { prior: prior(own), content }).collect()
+    }
+
+    /// With its `own` mean.
+    fn with(&self, own: f64) -> f64 {
+        self.prior + self.content * (own - self.prior)
+    }
 }
 
 /// Mends the `terms` of pixels that are much brighter than they are `taken` for, and what they see is: of those that carry
@@ -164,6 +215,21 @@ mod tests {
             assert!((ratio - 1.0).abs() < 0.02 + 3.0 * found.uncertainty(), "{rarity}: {ratio}, {found:?}");
             assert!((ratio - 1.0).abs() < 0.15, "{rarity}: {ratio}");
         }
+    }
+
+    /// One pixel of twenty has found light: nine of them say little, all of them say how bright each is.
+    #[test]
+    fn tiles_without_light_are_not_taken_for_black() {
+        let rarity = 0.003;
+        let value = |_: usize, stream: &mut Stream| {
+            if f64::from(stream.uniform()) < rarity { 1.0 / rarity } else { 0.0 }
+        };
+        let found = Noise::of_halves(64, &halves(8, value), &|_| 0.0).unwrap();
+        let truth = ((1.0 / rarity - 1.0) / 16.0 / 1.01).sqrt();
+        assert!(
+            (found.error / truth - 1.0).abs() < 0.02 + 3.0 * found.uncertainty(),
+            "{found:?}, not {truth}"
+        );
     }
 
     /// Every pixel is as bright as it is.
