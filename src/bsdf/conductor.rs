@@ -1,6 +1,8 @@
 //! A smooth metal: Mitsuba's `conductor`.
 
-use super::{BsdfModel, BsdfSample, BsdfValue, Transport, metals, mirror, reflectance};
+use super::microfacet::Roughness;
+use super::roughconductor::RoughConductor;
+use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Side, Smooth, Transport, metals, mirror, reflectance};
 use crate::description::{Params, Table, parameter::Parameter, rows, table};
 use crate::error::{Error, Result};
 use crate::math::fresnel;
@@ -109,8 +111,12 @@ pub(super) const METAL: &[Parameter] = rows! {
 impl Conductor {
     pub(super) const TABLE: Table = table! { "A polished metal."; ; METAL };
 
-    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        Metal::build(params).map(|metal| Self { metal })
+    pub(super) fn build(params: &Params<'_>) -> Result<Bsdf> {
+        let metal = Metal::build(params)?;
+        Ok(match params.library.soften {
+            Some(alpha) => RoughConductor::of(metal, Roughness::even(alpha)).into(),
+            None => Self { metal }.into(),
+        })
     }
 
     #[cfg(test)]
@@ -143,5 +149,13 @@ impl BsdfModel for Conductor {
 
     fn is_connectible(&self) -> bool {
         false
+    }
+
+    fn smooth(&self) -> Option<Smooth> {
+        Some(Smooth::Mirror)
+    }
+
+    fn dirac(&self, uv: Uv, wi: Vec3, side: Side, _: Transport) -> Option<(Vec3, Spectrum)> {
+        (wi.z > 0.0 && side == Side::Reflected).then(|| (mirror(wi), self.metal.reflectance(uv, wi.z)))
     }
 }

@@ -1,9 +1,11 @@
 //! A smooth interface between two dielectrics: Mitsuba's `dielectric`.
 
-use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index, mirror, reflectance};
+use super::microfacet::Roughness;
+use super::roughdielectric::RoughDielectric;
+use super::{Bsdf, BsdfModel, BsdfSample, BsdfValue, Side, Smooth, Transport, index, mirror, reflectance};
 use crate::description::{Params, Table, parameter::Parameter, rows, table};
 use crate::error::Result;
-use crate::math::fresnel::Interfaces;
+use crate::math::fresnel::{Interface, Interfaces};
 use crate::math::{Spectrum, Uv, Vec3};
 use crate::sampling::Stream;
 use crate::texture::Texture;
@@ -68,6 +70,15 @@ pub(super) fn choose(fresnel: f32, reflectance: Spectrum, transmittance: Spectru
     (total > 0.0).then(|| (reflected / total, transmitted / total))
 }
 
+/// The factor on what a walk carries as it is refracted: radiance spreads over another solid angle.
+#[inline]
+fn compression(interface: Interface, transport: Transport) -> f32 {
+    match transport {
+        Transport::Radiance => 1.0 / (interface.ratio * interface.ratio),
+        Transport::Importance => 1.0,
+    }
+}
+
 impl Dielectric {
     pub(super) const TABLE: Table = table! {
         "Smooth glass or water: reflects and refracts.";
@@ -75,8 +86,11 @@ impl Dielectric {
         TINTS
     };
 
-    pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { interfaces: index::interfaces(params)?, tints: Tints::build(params)? })
+    pub(super) fn build(params: &Params<'_>) -> Result<Bsdf> {
+        let smooth = Self { interfaces: index::interfaces(params)?, tints: Tints::build(params)? };
+        let rough =
+            params.library.soften.and_then(|alpha| RoughDielectric::of(&smooth, Roughness::even(alpha)));
+        Ok(rough.map_or_else(|| smooth.into(), Bsdf::from))
     }
 
     #[cfg(test)]
@@ -112,11 +126,8 @@ impl BsdfModel for Dielectric {
             return Some(lobe(mirror(wi), reflectance * (fresnel / reflect), reflect));
         }
         let wo = interface.refract(wi)?;
-        let compression = match transport {
-            Transport::Radiance => 1.0 / (interface.ratio * interface.ratio),
-            Transport::Importance => 1.0,
-        };
-        Some(lobe(wo, transmittance * (compression * (1.0 - fresnel) / transmit), transmit))
+        let compressed = compression(interface, transport) * (1.0 - fresnel);
+        Some(lobe(wo, transmittance * (compressed / transmit), transmit))
     }
 
     #[inline]
@@ -126,6 +137,23 @@ impl BsdfModel for Dielectric {
 
     fn is_connectible(&self) -> bool {
         false
+    }
+
+    fn smooth(&self) -> Option<Smooth> {
+        Some(Smooth::Interface(self.interfaces.outside.ratio))
+    }
+
+    fn dirac(&self, uv: Uv, wi: Vec3, side: Side, transport: Transport) -> Option<(Vec3, Spectrum)> {
+        let interface = self.interfaces.seen_from(wi.z);
+        let fresnel = interface.reflectance(wi.z.abs());
+        let (reflectance, transmittance) = self.tints.at(uv);
+        match side {
+            Side::Reflected => Some((mirror(wi), reflectance * fresnel)),
+            Side::Transmitted => {
+                let compressed = compression(interface, transport) * (1.0 - fresnel);
+                Some((interface.refract(wi)?, transmittance * compressed))
+            }
+        }
     }
 
     fn scatters_across(&self) -> bool {

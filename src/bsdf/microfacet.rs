@@ -5,7 +5,7 @@ use super::beckmann::View;
 use super::bounded;
 use crate::description::{Params, parameter::Parameter, rows};
 use crate::error::{Error, Result};
-use crate::math::{Uv, Vec2, Vec3, vec2, vec3};
+use crate::math::{Spectrum, Uv, Vec2, Vec3, vec2, vec3};
 use crate::texture::Texture;
 use std::f32::consts::{PI, TAU};
 
@@ -78,6 +78,12 @@ impl Roughness {
         Ok(Self::of(kind, alpha))
     }
 
+    /// The same everywhere and in all directions.
+    pub(super) fn even(alpha: f64) -> Self {
+        let alpha = Texture::constant(Spectrum::splat(alpha as f32));
+        Self::of(Kind::Beckmann, [alpha.clone(), alpha])
+    }
+
     fn of(kind: Kind, alpha: [Texture; 2]) -> Self {
         let even = alpha.iter().all(|alpha| matches!(alpha, Texture::Uniform(_)));
         let roughness = Self { kind, alpha, even: None };
@@ -116,7 +122,7 @@ impl Roughness {
     #[cfg(test)]
     pub(super) fn examples() -> Vec<Self> {
         let alphas = [(0.5, 0.5), (0.12, 0.12), (0.2, 0.6), (1.0, 1.0)];
-        let texture = |x| Texture::constant(crate::math::Spectrum::splat(x));
+        let texture = |x| Texture::constant(Spectrum::splat(x));
         let with = |kind| alphas.map(|(u, v)| Self::of(kind, [texture(u), texture(v)]));
         [Kind::Beckmann, Kind::Ggx].into_iter().flat_map(with).collect()
     }

@@ -117,6 +117,24 @@ pub struct BsdfSample {
     pub dirac: bool,
 }
 
+/// What a smooth surface does to rays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Smooth {
+    /// It reflects them.
+    Mirror,
+    /// It reflects and refracts them. The index behind it, where the shading normal does not point, over that before it.
+    Interface(f32),
+}
+
+/// Where a Dirac lobe leads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Back to where the light came from.
+    Reflected,
+    /// Through the surface.
+    Transmitted,
+}
+
 /// What every surface model can do. `uv` is the texture position.
 pub trait BsdfModel {
     /// Value and both densities of the non-Dirac part.
@@ -158,6 +176,16 @@ pub trait BsdfModel {
         false
     }
 
+    /// What it does to rays, if it is smooth and nothing else.
+    fn smooth(&self) -> Option<Smooth> {
+        None
+    }
+
+    /// The direction and the coefficient of the Dirac lobe on one side of a smooth surface; none where light cannot go there.
+    fn dirac(&self, _uv: Uv, _wi: Vec3, _side: Side, _transport: Transport) -> Option<(Vec3, Spectrum)> {
+        None
+    }
+
     /// What an `albedo` layer shows, seen from `wi`: as in Mitsuba the diffuse reflectance of models that have
     /// one, pi f towards the normal of others.
     fn albedo(&self, uv: Uv, wi: Vec3) -> Spectrum {
@@ -186,6 +214,8 @@ macro_rules! bsdfs {
             #[inline] fn has_dirac() -> bool;
             #[inline] fn has_null() -> bool;
             #[inline] fn albedo(uv: Uv, wi: Vec3) -> Spectrum;
+            fn smooth() -> Option<Smooth>;
+            fn dirac(uv: Uv, wi: Vec3, side: Side, transport: Transport) -> Option<(Vec3, Spectrum)>;
             fn scatters_across() -> bool;
         }
 

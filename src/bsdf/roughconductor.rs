@@ -21,7 +21,11 @@ impl RoughConductor {
     };
 
     pub(super) fn build(params: &Params<'_>) -> Result<Self> {
-        Ok(Self { metal: Metal::build(params)?, roughness: Roughness::build(params)? })
+        Ok(Self::of(Metal::build(params)?, Roughness::build(params)?))
+    }
+
+    pub(super) fn of(metal: Metal, roughness: Roughness) -> Self {
+        Self { metal, roughness }
     }
 
     #[inline]

@@ -53,13 +53,18 @@ impl RoughDielectric {
     /// light by less than directions resolve.
     pub(super) fn build(params: &Params<'_>) -> Result<Bsdf> {
         let smooth = Dielectric { interfaces: index::interfaces(params)?, tints: Tints::build(params)? };
-        let roughness = Roughness::build(params)?;
-        if (smooth.interfaces.outside.ratio - 1.0).abs() * roughness.max() < LEAST_SPREAD {
-            let text = "the indices are so close that this is the smooth \"dielectric\"";
-            params.library.warn(params.location(), text);
-            return Ok(smooth.into());
+        if let Some(rough) = Self::of(&smooth, Roughness::build(params)?) {
+            return Ok(rough.into());
         }
-        Ok(Self { smooth, roughness }.into())
+        let text = "the indices are so close that this is the smooth \"dielectric\"";
+        params.library.warn(params.location(), text);
+        Ok(smooth.into())
+    }
+
+    /// The rough surface of the same material; none that can be distinguished from the smooth one.
+    pub(super) fn of(smooth: &Dielectric, roughness: Roughness) -> Option<Self> {
+        let bends = (smooth.interfaces.outside.ratio - 1.0).abs() * roughness.max();
+        (bends >= LEAST_SPREAD).then(|| Self { smooth: smooth.clone(), roughness })
     }
 
     /// Value and densities where `facet` connects the two directions; none where its lobes are all black.

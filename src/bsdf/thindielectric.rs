@@ -1,7 +1,7 @@
 //! A pane of glass too thin to bend light: Mitsuba's `thindielectric`.
 
 use super::dielectric::{TINTS, Tints};
-use super::{BsdfModel, BsdfSample, BsdfValue, Transport, index, mirror};
+use super::{BsdfModel, BsdfSample, BsdfValue, Side, Smooth, Transport, index, mirror};
 use crate::description::{Params, Table, table};
 use crate::error::Result;
 use crate::math::fresnel::Interfaces;
@@ -70,6 +70,15 @@ impl BsdfModel for ThinDielectric {
 
     fn is_connectible(&self) -> bool {
         false
+    }
+
+    fn smooth(&self) -> Option<Smooth> {
+        Some(Smooth::Mirror)
+    }
+
+    fn dirac(&self, uv: Uv, wi: Vec3, side: Side, _: Transport) -> Option<(Vec3, Spectrum)> {
+        (wi.z != 0.0 && side == Side::Reflected)
+            .then(|| (mirror(wi), self.tints.reflectance.eval(uv) * self.reflected(wi.z)))
     }
 
     fn has_null(&self) -> bool {

@@ -29,8 +29,13 @@ pub(super) struct Plan {
     error: Option<f64>,
     /// Not all pixels are shaded.
     progressive: Option<Progressive>,
+    /// Smooth glass and metal are as rough as this.
+    softened: Option<f64>,
     unreached: Vec<Unreached>,
 }
+
+/// What of it connections by way of smooth surfaces find.
+const FOLLOWED: &str = "but for what a rectangle, disk, cube or sphere sends on by itself, at up to 3 points (--soften 0.01 reaches all, with a bias)";
 
 impl Plan {
     /// That of a render of `setup` by `settings`, as a pilot has `chosen` if there was one.
@@ -42,6 +47,7 @@ impl Plan {
             flights: if algorithm == Algorithm::Fog { Vec::new() } else { flights(&setup.scene.media) },
             size: [setup.film.width, setup.film.height],
             unreached: coverage::unreached(&setup.scene, &settings.options),
+            softened: setup.scene.softened,
             chosen,
             settings,
             error,
@@ -83,6 +89,7 @@ impl Plan {
         if !self.flights.is_empty() {
             parts.push(list(&self.flights.iter().map(|method| in_words(*method)).collect::<Vec<_>>()));
         }
+        parts.extend(self.softened.map(|alpha| format!("glass and metal softened (biased, alpha {alpha})")));
         parts
     }
 
@@ -145,8 +152,9 @@ impl Plan {
         let line = |Unreached { light, by_bdpt }: &Unreached| {
             let who = match by_bdpt {
                 Share::All => "bdpt reaches it",
+                Share::Some if algorithm == Algorithm::Bdpt && whole => FOLLOWED,
                 Share::Some => "bdpt reaches a part of it",
-                Share::None => "no integrator does",
+                Share::None => "no integrator does (--soften 0.01 does, with a bias)",
             };
             format!("not reached by {by}: {light}; {who}")
         };

@@ -21,6 +21,8 @@ pub struct Library {
     warnings: RefCell<Vec<String>>,
     /// True if numbers of files that are a hair out of range are refused, not mended.
     pub is_strict: bool,
+    /// Smooth glass and metal are as rough as this, if anything.
+    pub soften: Option<f64>,
     /// Where and when the scene is: what becomes the origin of all positions, in the file's coordinates (m), and its time (s). For
     /// what is built from an object and its library alone.
     pub place: Cell<(DVec3, f64)>,

@@ -93,6 +93,7 @@ impl<'a> Follower<'a> {
             Meeting::Lens(_) => self.current,
             Meeting::Met(arrival, sample) => Some(self.found(sample, self.last, arrival.incoming)),
             Meeting::Emitter(sample) => self.joined(sample, self.last),
+            Meeting::Bent { sample, last, .. } => self.joined(sample, *last),
             Meeting::Pivot(_, event, sample) => self.joined(sample, event.position()),
         }
     }

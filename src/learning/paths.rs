@@ -140,6 +140,7 @@ impl Tracks {
             }
             Meeting::Met(arrival, _) => -arrival.incoming,
             Meeting::Emitter(sample) => sample.point.seen_from(from)?.0,
+            Meeting::Bent { towards, .. } => *towards,
             Meeting::Light(_, other) => (other.position() - from).try_normalize()?,
             Meeting::Pivot(..) => return None,
         };

@@ -273,7 +273,9 @@ impl CameraPathObserver<'_> {
         let of = |sample: &EmitterSample, component| Some((sample.light, component));
         match meeting {
             Meeting::Met(_, sample) if t == 2 => of(sample, Component::of_emitter(sample.point.is_volume())),
-            Meeting::Met(_, sample) | Meeting::Emitter(sample) => of(sample, by_trail(0)),
+            Meeting::Met(_, sample) | Meeting::Emitter(sample) | Meeting::Bent { sample, .. } => {
+                of(sample, by_trail(0))
+            }
             Meeting::Pivot(_, _, sample) => of(sample, Component::Single),
             Meeting::Light(index, _) => {
                 let Kept { light, collisions } = self.kept[self.hero][*index];

@@ -162,7 +162,8 @@ fn assemble(moving: &Moving, overrides: Overrides, before: Option<&Before<'_>>, 
     let root = &keyframes::resolve(root, smoke::time_of(root) + after);
     let (root, smoke) = smoke::expand(root, *shutter, kept)?;
     let mut library = Library::new(&root)?;
-    (library.is_strict, library.kept) = (overrides.strict, kept.clone());
+    (library.is_strict, library.soften) = (overrides.strict, overrides.soften);
+    library.kept = kept.clone();
     let sections = Sections::sort(&root, &library)?;
     let kept = before.and_then(|before| before.recentre);
     let recentre = kept.map_or_else(|| sections.viewpoint(&library), Ok)?;

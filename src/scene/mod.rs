@@ -53,6 +53,8 @@ pub struct Scene {
     pub crop: Crop,
     /// Where the origin of all positions lies in the file's coordinates (m).
     pub recentre: DVec3,
+    /// Its smooth glass and metal are as rough as this, which they should not be.
+    pub softened: Option<f64>,
     /// It is seen at other times too, at which other things may scatter.
     pub moves: bool,
 }

@@ -32,6 +32,8 @@ pub struct Overrides {
     pub groups: bool,
     /// Also an image of each component of radiance.
     pub components: bool,
+    /// Smooth glass and metal are as rough as this.
+    pub soften: Option<f64>,
     /// Files with numbers a hair out of range are refused, not mended.
     pub strict: bool,
 }
@@ -45,6 +47,7 @@ impl Overrides {
             ("step", step.map(Value::from)),
             ("march_error", march_error.map(Value::from)),
             ("scattering", scattering.map(Value::from)),
+            ("soften", self.soften.map(Value::from)),
         ];
         all.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?))).collect()
     }

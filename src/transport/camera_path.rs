@@ -36,6 +36,8 @@ pub(super) struct CameraPath<'a, P: Profile, R> {
     pdf_fwd: f32,
     /// Where it collided first, if equiangular sampling may have.
     pub(super) first: Option<FirstCollision>,
+    /// A strategy connects across a segment of the walk so far.
+    pub(super) is_linked: bool,
     pub(super) observer: R,
 }
 
@@ -128,6 +130,9 @@ impl<P: Profile, R: Observer> Visitor<P> for CameraPath<'_, P, R> {
                 self.next_event(vertex, stream);
             }
             self.connect_light(vertex, stream);
+            if let Some(manifold) = &estimator.manifold {
+                self.connect_bent(manifold, vertex, stream);
+            }
         }
     }
 
@@ -161,7 +166,16 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
         hero: usize,
         observer: R,
     ) -> Self {
-        Self { estimator, light, hero, previous: Vec3::ZERO, pdf_fwd: 0.0, first: None, observer }
+        Self {
+            estimator,
+            light,
+            hero,
+            previous: Vec3::ZERO,
+            pdf_fwd: 0.0,
+            first: None,
+            is_linked: false,
+            observer,
+        }
     }
 
     /// What else there is along the primary ray, once the walk is done: it comes to the evenly spread numbers first.

@@ -3,7 +3,7 @@
 //! What decides is how a path scatters, not where: an emitter of some kind, then vertices that scatter by a Dirac lobe
 //! or not. Five vertices show all there is to see of the ends and of two neighbours between them.
 
-use super::{Options, Strategies, strategy::StrategyKind};
+use super::{Options, Strategies, manifold::Manifold, strategy::StrategyKind};
 use crate::{
     bsdf::{Bsdf, BsdfModel},
     emitter::Kind,
@@ -42,6 +42,8 @@ pub struct Traits {
     smooth: Option<&'static str>,
     /// Something scatters otherwise.
     rough: bool,
+    /// Light of lamps is followed over some smooth shapes, see [`Manifold`].
+    bent: bool,
     /// Most segments of a path.
     max_depth: u32,
     /// Fewest segments of one that counts.
@@ -92,6 +94,7 @@ impl Traits {
                 bsdfs().filter(|bsdf| bsdf.has_dirac() && bsdf.survival(Vec2::ZERO.into(), Vec3::Z) > 0.0),
             ),
             rough: scatters || scene.moves || bsdfs().any(BsdfModel::is_connectible),
+            bent: Manifold::of(scene).is_some(),
             max_depth: options.max_depth.unwrap_or(u32::MAX),
             min_depth: options.min_depth,
         }
@@ -101,7 +104,11 @@ impl Traits {
     pub fn unreached(&self, set: Strategies) -> Vec<Unreached> {
         let mut kinds: Vec<Unreached> = Vec::new();
         for path in self.paths().filter(|path| !path.is_made_by(set)) {
-            let (light, share) = (path.in_words(), Share::of(path.is_made_by(Strategies::BDPT)));
+            let share = match path.is_made_by(Strategies::BDPT) {
+                false if self.bent && path.is_bent() => Share::Some,
+                all => Share::of(all),
+            };
+            let light = path.in_words();
             match kinds.iter_mut().find(|kind| kind.light == light) {
                 Some(kind) => kind.by_bdpt = kind.by_bdpt.with(share),
                 None => kinds.push(Unreached { light, by_bdpt: share }),
@@ -173,6 +180,14 @@ struct Path<'a> {
 impl Path<'_> {
     fn is_made_by(&self, set: Strategies) -> bool {
         makers(self.emitter, &self.dirac).iter().any(|kind| set.has(*kind))
+    }
+
+    /// True of light that smooth surfaces send on, from where it may be followed back.
+    fn is_bent(&self) -> bool {
+        !self.emitter.hittable
+            && self.emitter.connectible
+            && self.dirac.first() == Some(&true)
+            && self.dirac.contains(&false)
     }
 
     fn in_words(&self) -> String {
@@ -291,6 +306,9 @@ pub fn notes(scene: &Scene, options: &Options) -> Vec<String> {
     if trackers.any(|tracker| matches!(tracker, DistanceSampler::RayMarching(_))) {
         notes.push("is biased by the step of its ray marching".to_owned());
     }
+    if let Some(alpha) = scene.softened {
+        notes.push(format!("is biased: smooth glass and metal are rough (alpha {alpha})"));
+    }
     notes
 }
 
@@ -323,6 +341,7 @@ mod tests {
             emitters: emitters.iter().map(named).collect(),
             smooth,
             rough: true,
+            bent: false,
             max_depth: u32::MAX,
             min_depth: 0,
         }
@@ -390,8 +409,11 @@ mod tests {
         let seen = (format!("{caustics}, seen by way of smooth glass"), some);
         let point = traits(&[POINT], true);
         assert_eq!(unreached(&point, Strategies::PT), [alone.clone(), (caustics, all), seen.clone()]);
-        assert_eq!(unreached(&point, Strategies::BDPT), [alone, (seen.0, none)]);
+        let caustics_seen = seen.0.clone();
+        assert_eq!(unreached(&point, Strategies::BDPT), [alone.clone(), (seen.0, none)]);
         assert_eq!(unreached(&traits(&[POINT], false), Strategies::PT), []);
+        let followed = Traits { bent: true, ..point };
+        assert_eq!(unreached(&followed, Strategies::BDPT), [(alone.0, none), (caustics_seen, some)]);
     }
 
     /// What no strategy can make is missing from none.

@@ -2,6 +2,7 @@
 
 use super::{
     cache::{LightCache, Partners},
+    manifold::Manifold,
     mis::Strategy,
     profile::Profile,
     roulette::Roulette,
@@ -54,6 +55,8 @@ pub struct Estimator<'a, P: Profile> {
     pub(super) forced_interaction: bool,
     /// Which starts of light subpaths reach the image; none if they start as their emitters would have it.
     pub(super) starts: Option<Arc<Starts>>,
+    /// Connections by way of smooth surfaces; none where there is nothing for them.
+    pub(super) manifold: Option<Manifold>,
     /// How the environment is found.
     pub(super) sky: Sky,
     /// What walks follow.

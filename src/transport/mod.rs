@@ -34,6 +34,7 @@
 //! | s = 0 | the camera subpath hits an emitter | [`camera_path::CameraPath::emitter_hit`] |
 //! | s = 1, t >= 2 | next-event estimation: a fresh point of an emitter | [`camera_path::CameraPath::join_emitter`] |
 //! | s >= 2, t >= 2 | connection with a light vertex drawn from a cache, or with all of one walk ([`Connections`]) | [`camera_path::CameraPath::connect_with`] |
+//! | s >= 2, t >= 2 over Dirac lobes | the way of a lamp's light over a smooth shape is solved for | [`camera_path::CameraPath::connect_bent`] |
 //! | s >= 1, t = 1 | the light subpath is seen by the lens, through any pixel | [`light_path::LightPath::connect_to_lens`] |
 //! | s = 1, t = 2 in media | a distance along the primary ray, likely near an emitter, then as s = 1 | [`equiangular`] |
 //!
@@ -74,6 +75,7 @@ mod gather;
 mod interaction;
 pub mod lengths;
 mod light_path;
+mod manifold;
 mod mis;
 pub mod needs;
 pub mod observer;
@@ -111,6 +113,7 @@ use crate::{
     shape::Ray,
 };
 use estimator::Counts;
+use manifold::Manifold;
 use observer::{Meeting, Observer};
 use roulette::Roulette;
 
@@ -158,6 +161,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             hide_emitters,
             forced_interaction: P::MEDIA && forced_interaction,
             starts: learnt.starts,
+            manifold: if strategies.connection && lit { Manifold::of(scene) } else { None },
             sky: effort.sky,
             guide: learnt.guide.filter(|_| P::GUIDED),
             radiance: learnt.radiance.filter(|_| P::GUIDED),

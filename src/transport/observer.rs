@@ -7,7 +7,7 @@ use super::{
     strategy::StrategyKind,
 };
 use crate::{
-    math::{Spectrum, Vec2},
+    math::{Spectrum, Vec2, Vec3},
     scene::lights::{EmissionSample, EmitterSample},
 };
 use std::ops::{Div, Mul};
@@ -19,6 +19,15 @@ pub enum Meeting<'a> {
     Met(Arrival, &'a EmitterSample),
     /// s = 1: a point of an emitter, picked for the last vertex.
     Emitter(&'a EmitterSample),
+    /// s >= 2: a point of an emitter, in unit direction `towards` by way of smooth surfaces, of which `last` is a point of the last.
+    Bent {
+        /// From the last vertex.
+        towards: Vec3,
+        /// Where the light comes to the smooth surfaces.
+        last: Vec3,
+        /// Where it comes from.
+        sample: &'a EmitterSample,
+    },
     /// s >= 2: a vertex of a light subpath, and its place in the pool of the hero channel.
     Light(usize, Event<'a>),
     /// t = 1: the lens, through this film position (pixels).

@@ -200,7 +200,7 @@ fn light_that_is_not_reached_is_told_with_who_reaches_it() {
     for line in [
         format!("not reached by pt: {caustics}; bdpt reaches it\n"),
         format!("not reached by pt: {caustics}, seen by way of smooth glass; bdpt reaches a part of it\n"),
-        "not reached by pt: light of point emitters that comes to the camera by way of smooth glass alone; no integrator does\n".to_owned(),
+        "not reached by pt: light of point emitters that comes to the camera by way of smooth glass alone; no integrator does (--soften 0.01 does, with a bias)\n".to_owned(),
     ] {
         assert!(of_pt.contains(&line), "no {line} in {of_pt}");
     }
@@ -211,6 +211,7 @@ fn light_that_is_not_reached_is_told_with_who_reaches_it() {
     );
     let of_bdpt = sandbox.run("render scene.json --spp 1").ends(0).err();
     assert!(!of_bdpt.contains("bdpt reaches it") && of_bdpt.contains("no integrator does"), "{of_bdpt}");
+    assert!(of_bdpt.contains("sphere sends on by itself"), "{of_bdpt}");
     let room = Sandbox::with_scene(&foggy_room());
     assert!(!room.run("render scene.json --spp 1 --integrator pt").ends(0).err().contains("not reached"));
 }
@@ -369,4 +370,17 @@ fn help_tells_the_exit_codes() {
     for code in ["0    success", "1    done", "2    a mistake", "129", "130", "143"] {
         assert!(help.contains(code), "no {code} in {help}");
     }
+}
+
+/// What is biased says so: in words, in the name of the image, and in its metadata.
+#[test]
+fn softened_glass_is_told() {
+    let sandbox = Sandbox::with_scene(&glass_ball());
+    let said = sandbox.run("render scene.json -v --spp 1 --soften 0.02").ends(0).err();
+    assert!(said.contains("softened (biased, alpha 0.02)") && !said.contains("not reached"), "{said}");
+    assert!(sandbox.path("scene-softened.exr").is_file());
+    let metadata = sandbox.run("info scene-softened.exr").ends(0).out();
+    assert!(metadata.contains("soften") && metadata.contains("0.02"), "{metadata}");
+    let refused = sandbox.run("render scene.json --soften 2").ends(2).err();
+    assert!(refused.contains("expected a roughness from 0.0001 to 0.5"), "{refused}");
 }

@@ -25,6 +25,7 @@ mod modes;
 mod motion;
 mod openings;
 mod overlaps;
+mod smooth_shapes;
 mod sobol;
 mod starts;
 mod traps;

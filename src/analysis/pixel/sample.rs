@@ -256,7 +256,7 @@ impl Observer for CameraPathObserver<'_> {
         let kind = meeting.kind(s, t);
         let partner = match meeting {
             Meeting::Met(arrival, sample) => Partner::Met(arrival, *sample),
-            Meeting::Emitter(sample) => Partner::Emitter(*sample),
+            Meeting::Emitter(sample) | Meeting::Bent { sample, .. } => Partner::Emitter(*sample),
             Meeting::Light(index, event) => {
                 let (walk, edges) = self.kept[index];
                 Partner::Light { walk, edges, position: event.position() }

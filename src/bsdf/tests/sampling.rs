@@ -93,3 +93,25 @@ fn every_model_samples_its_density() {
         }
     });
 }
+
+/// What smooth surfaces do is what they sample, and how likely that is.
+#[test]
+fn dirac_lobes_are_those_that_are_sampled() {
+    let mut met = 0;
+    for bsdf in examples().into_iter().filter(|bsdf| bsdf.smooth().is_some()) {
+        for (wi, transport) in incoming().into_iter().flat_map(|wi| BOTH.map(|transport| (wi, transport))) {
+            for index in 0..20 {
+                let Some(sample) = bsdf.sample(UV, wi, transport, &mut stream(index)) else { continue };
+                let side = if sample.wo.z * wi.z > 0.0 { Side::Reflected } else { Side::Transmitted };
+                let (wo, coefficient) = bsdf.dirac(UV, wi, side, transport).unwrap();
+                assert!(wo.distance(sample.wo) < 1e-6, "{bsdf:?} from {wi}: {wo}, not {}", sample.wo);
+                assert!(
+                    close_colors(coefficient, sample.weight * sample.pdf_fwd, 1e-5),
+                    "{bsdf:?} from {wi}"
+                );
+                met += 1;
+            }
+        }
+    }
+    assert!(met > 1000, "{met}");
+}

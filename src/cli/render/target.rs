@@ -23,6 +23,15 @@ pub(crate) struct Target {
     pub display: Display,
 }
 
+/// What the image is called that nobody gave a name: what is biased says so.
+fn unnamed(arguments: &Render, setup: &Setup) -> PathBuf {
+    let name = arguments.scene.name();
+    match setup.scene.softened {
+        Some(_) => format!("{}-softened", name.to_string_lossy()).into(),
+        None => name,
+    }
+}
+
 impl Target {
     /// The kind of file is that of the output's name, else that of the scene's film.
     pub(crate) fn new(arguments: &Render, setup: &Setup) -> Result<Self> {
@@ -34,7 +43,7 @@ impl Target {
             (Some((path, file)), _) => (path.to_owned(), file),
             (None, Some(path)) if film::output::is_stream(path) => (path.clone(), scene.file),
             (None, Some(path)) => (path.with_extension(scene.file.extension()), scene.file),
-            (None, None) => (arguments.scene.name().with_extension(scene.file.extension()), scene.file),
+            (None, None) => (unnamed(arguments, setup).with_extension(scene.file.extension()), scene.file),
         };
         let has_layers = !setup.integrator.layers.is_empty();
         if file != FileKind::OpenExr && (has_layers || arguments.batches.is_some()) {

@@ -179,7 +179,7 @@ impl<'a> Recorder<'a> {
         let own = |vertices: u32| self.ends.get(vertices as usize).copied().unwrap_or_default();
         match meeting {
             Meeting::Met(..) => own(t.saturating_sub(2)),
-            Meeting::Emitter(_) => own(t - 1),
+            Meeting::Emitter(_) | Meeting::Bent { .. } => own(t - 1),
             Meeting::Light(index, _) => own(t - 1).and(self.kept[self.follower.hero][*index]),
             Meeting::Lens(_) => own(s - 1),
             Meeting::Pivot(_, event, _) => Ends::at(event.survival, self.survival),

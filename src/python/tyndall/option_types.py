@@ -34,6 +34,7 @@ class RenderOptions(TypedDict, total=False):
     step: Number | None
     march_error: Number | None
     scattering: Literal["multiple", "single", "none"] | None
+    soften: Number | None
     forced_interaction: bool | None
     no_forced_interaction: bool | None
     hide_emitters: bool | None

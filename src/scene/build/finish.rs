@@ -82,6 +82,7 @@ impl Builder<'_> {
             crop,
             media_map: MediaMap { outside, sensor: sensor_medium, known, overlaps, nowhere, shut_in },
             recentre,
+            softened: self.library.soften,
             moves: false,
         };
         Ok(Finished { scene, shape_names, bsdf_names, apart })

@@ -1,0 +1,244 @@
+//! Smooth shapes, and the chains over them.
+
+use super::{
+    ball::{Course, Round},
+    chain::{Chain, Link, MOST, Target},
+    flats::{Plane, Way},
+};
+use crate::{
+    bsdf::{BsdfModel, Smooth},
+    math::{DVec3, Vec3, measure},
+    scene::Scene,
+    shape::{Curved, CurvedModel as _, Flat, Hit, Primitive, Ray, Shape, ShapeModel as _, SurfacePoint},
+};
+
+/// A smooth shape.
+pub(super) struct Body {
+    shape: u32,
+    form: Form,
+    /// The index behind the surface over that before it, where the shading normal points; none of a mirror.
+    ratio: Option<f64>,
+}
+
+enum Form {
+    /// Planes, whose normals are shading normals. Together they enclose something, or there is one.
+    Flats(Vec<(Plane, Primitive)>),
+    /// A ball; `turn` is 1 where its normals point outwards, else -1.
+    Ball { center: DVec3, radius: f64, turn: f64 },
+}
+
+impl Body {
+    /// All of `scene` that are made of planes or balls.
+    pub(super) fn all(scene: &Scene) -> Vec<Self> {
+        (0..scene.surfaces.len() as u32).filter_map(|shape| Self::of(scene, shape)).collect()
+    }
+
+    fn of(scene: &Scene, shape: u32) -> Option<Self> {
+        let ratio = match scene.bsdf(shape).smooth()? {
+            Smooth::Mirror => None,
+            Smooth::Interface(ratio) => Some(f64::from(ratio)),
+        };
+        let form = Form::of(&scene.geometry.shapes()[shape as usize])?;
+        Some(Self { shape, form, ratio })
+    }
+
+    /// Every chain of up to [`MOST`] points over it `from` a point to a target.
+    pub(super) fn chains(&self, from: DVec3, target: Target, found: &mut impl FnMut(&Chain)) {
+        match &self.form {
+            Form::Flats(flats) => self.over_flats(flats, from, target, found),
+            Form::Ball { center, radius, turn } => {
+                self.over_ball(*center, *radius, *turn, from, target, found);
+            }
+        }
+    }
+
+    fn over_flats(
+        &self,
+        flats: &[(Plane, Primitive)],
+        from: DVec3,
+        target: Target,
+        found: &mut impl FnMut(&Chain),
+    ) {
+        for (number, (plane, _)) in flats.iter().enumerate() {
+            let (here, there) = (plane.height(from), target.height(plane));
+            let (index, next) = (self.index(here), self.index(there));
+            let links = match (here * there > 0.0, self.ratio) {
+                (true, _) => [(number, None)],
+                (false, Some(_)) => [(number, Some(next / index))],
+                (false, None) => continue,
+            };
+            let after = if links[0].1.is_some() { next } else { index };
+            Self::over(flats, &links, &[index, after], from, target, found);
+        }
+        let Some(ratio) = self.ratio.filter(|_| flats.len() > 1) else { return };
+        for (first, _) in flats.iter().enumerate().filter(|(_, (plane, _))| plane.height(from) > 0.0) {
+            for (last, _) in flats.iter().enumerate().filter(|(_, (plane, _))| target.height(plane) > 0.0) {
+                if first != last {
+                    let links = [(first, Some(ratio)), (last, Some(1.0 / ratio))];
+                    Self::over(flats, &links, &[1.0, ratio, 1.0], from, target, found);
+                }
+            }
+        }
+    }
+
+    /// The index of refraction at a `height` above a surface.
+    fn index(&self, height: f64) -> f64 {
+        if height < 0.0 { self.ratio.unwrap_or(1.0) } else { 1.0 }
+    }
+
+    /// The chain over these planes, by their numbers, if it meets their parts that are there.
+    fn over(
+        flats: &[(Plane, Primitive)],
+        links: &[(usize, Option<f64>)],
+        indices: &[f64],
+        from: DVec3,
+        target: Target,
+        found: &mut impl FnMut(&Chain),
+    ) {
+        let mut planes = [flats[0].0; 2];
+        links.iter().zip(&mut planes).for_each(|((number, _), plane)| *plane = flats[*number].0);
+        let way = Way { from, planes: &planes[..links.len()], indices, target };
+        let Some(points) = way.solve() else { return };
+        let link = |((number, ratio), position): (&(usize, Option<f64>), DVec3)| Link {
+            position,
+            normal: flats[*number].0.normal,
+            curvature: 0.0,
+            ratio: *ratio,
+            primitive: *number,
+        };
+        let links: Vec<Link> = links.iter().zip(points).map(link).collect();
+        found(&Chain::new(&links));
+    }
+
+    fn over_ball(
+        &self,
+        center: DVec3,
+        radius: f64,
+        turn: f64,
+        from: DVec3,
+        target: Target,
+        found: &mut impl FnMut(&Chain),
+    ) {
+        // The index within the ball over that around it.
+        let ratio = self.ratio.map(|ratio| ratio.powf(turn));
+        for course in
+            courses(from.distance(center) < radius, target.is_within(center, radius), ratio.is_some())
+        {
+            let inside = ratio.unwrap_or(1.0);
+            let Some(round) = Round::new((center, radius, inside), from, target, course) else { continue };
+            round.solve(&mut |points| {
+                let link = |(number, position): (usize, &DVec3)| Link {
+                    position: *position,
+                    normal: (*position - center) / radius,
+                    curvature: 1.0 / radius,
+                    ratio: course.refracts(number, inside),
+                    primitive: 0,
+                };
+                let links: Vec<Link> = points.iter().enumerate().map(link).collect();
+                found(&Chain::new(&links));
+            });
+        }
+    }
+
+    /// The surface where a ray from `origin` comes to a link; none where there is nothing of the plane.
+    pub(super) fn surface(&self, scene: &Scene, link: &Link, origin: Vec3) -> Option<SurfacePoint> {
+        let (direction, t, _) = measure::between(origin, link.position.as_vec3())?;
+        let ray = Ray { origin, direction, t_max: f32::INFINITY };
+        let [t, u, v] = match &self.form {
+            Form::Ball { .. } => [t, 0.0, 0.0],
+            Form::Flats(flats) => match &flats[link.primitive].1 {
+                Primitive::Flat(flat) => {
+                    let [u, v] = within(flat, link.position)?;
+                    [t, u, v]
+                }
+                Primitive::Curved(curved) => curved.closest(&ray, f32::INFINITY)?,
+                Primitive::Ball { .. } => return None,
+            },
+        };
+        let shape = &scene.geometry.shapes()[self.shape as usize];
+        let point = shape.surface(link.primitive, &ray, &Hit { t, primitive: link.primitive as u32, u, v });
+        Some(SurfacePoint { shape: self.shape, ..point })
+    }
+}
+
+/// The coordinates of a point that lies on a parallelogram.
+fn within(flat: &Flat, point: DVec3) -> Option<[f32; 2]> {
+    let at = flat.coordinates(point);
+    at.iter()
+        .all(|coordinate| (0.0..=1.0).contains(coordinate))
+        .then(|| at.map(|coordinate| coordinate as f32))
+}
+
+impl Form {
+    /// None of what is made of other things.
+    fn of(shape: &Shape) -> Option<Self> {
+        match shape {
+            Shape::Parallelograms(_) | Shape::Disk(_) => (0..shape.primitive_count())
+                .map(|number| plane(shape, number))
+                .collect::<Option<_>>()
+                .map(Self::Flats),
+            Shape::Sphere(sphere) => {
+                let Primitive::Ball { center, radius } = shape.primitive(0) else { return None };
+                let above = center + Vec3::Z * radius;
+                let turn = f64::from(sphere.point_near(above).shading.normal.z.signum());
+                Some(Self::Ball { center: center.as_dvec3(), radius: f64::from(radius), turn })
+            }
+            Shape::Cylinder(_) | Shape::Mesh(_) | Shape::Instance(_) => None,
+        }
+    }
+}
+
+/// The plane of a primitive, and that itself.
+fn plane(shape: &Shape, number: usize) -> Option<(Plane, Primitive)> {
+    let primitive = shape.primitive(number);
+    let flat = match &primitive {
+        Primitive::Flat(flat) => *flat,
+        Primitive::Curved(Curved::Disk(disk)) => disk.square(),
+        _ => return None,
+    };
+    let ray = Ray { origin: flat.corner, direction: flat.normal, t_max: f32::INFINITY };
+    let shading = shape.surface(number, &ray, &Hit { t: 0.0, primitive: 0, u: 0.0, v: 0.0 }).shading.normal;
+    let [u, v] = [flat.edge_u, flat.edge_v].map(|edge| edge.as_dvec3());
+    let normal = u.cross(v).normalize();
+    let normal = normal * normal.dot(shading.as_dvec3()).signum();
+    Some((Plane::new(flat.corner.as_dvec3(), normal), primitive))
+}
+
+impl Course {
+    /// The index beyond over that before where the light meets the ball for time `number`, if it is refracted there.
+    fn refracts(&self, number: usize, inside: f64) -> Option<f64> {
+        match (number == 0 && self.enters, number + 1 == self.meetings && self.leaves) {
+            (true, _) => Some(inside),
+            (false, true) => Some(1.0 / inside),
+            (false, false) => None,
+        }
+    }
+}
+
+/// What light can do at a ball between a start and a target that are inside or outside.
+fn courses(starts_inside: bool, ends_inside: bool, transmits: bool) -> Vec<Course> {
+    let course = |meetings| Course { meetings, enters: !starts_inside, leaves: !ends_inside };
+    let within = 1..=if transmits { MOST } else { 0 };
+    match (starts_inside, ends_inside) {
+        (true, true) => (1..=MOST).map(course).collect(),
+        (false, false) => {
+            let reflected = Course { meetings: 1, enters: false, leaves: false };
+            std::iter::once(reflected).chain(within.filter(|meetings| *meetings > 1).map(course)).collect()
+        }
+        _ => within.map(course).collect(),
+    }
+}
+
+impl Target {
+    /// The signed distance above a plane; of a direction, its rise.
+    fn height(self, plane: &Plane) -> f64 {
+        match self {
+            Self::Point(point) => plane.height(point),
+            Self::Direction(direction) => direction.dot(plane.normal),
+        }
+    }
+
+    fn is_within(self, center: DVec3, radius: f64) -> bool {
+        matches!(self, Self::Point(point) if point.distance(center) < radius)
+    }
+}

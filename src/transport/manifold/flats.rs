@@ -1,0 +1,242 @@
+//! Chains over planes. Light that crosses planes, or is reflected by one, takes the points of least optical length (Fermat).
+//! That length is a convex function of them: there is one such path at most, and Newton's method finds it.
+
+use super::chain::Target;
+use crate::math::{DMat3, DMat4, DVec3};
+use glam::DVec4;
+
+/// Most steps of Newton's method; six are common.
+const STEPS: usize = 50;
+/// Steps after which it is clear where the points lie. Where no light goes from one plane to another, the shortest way leads
+/// over the line where they meet, which takes long to find.
+const FIRST_STEPS: usize = 3;
+/// Most times that a step is halved.
+const HALVINGS: i32 = 20;
+/// Part of what a step promises that it must gain.
+const ENOUGH: f64 = 1e-4;
+/// Sine of the angle by which the law of refraction may be missed.
+const MISSED: f64 = 1e-11;
+
+/// A plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plane {
+    /// A point of it,
+    pub(super) origin: DVec3,
+    /// and its unit normal.
+    pub(super) normal: DVec3,
+    /// Orthonormal directions in it.
+    axes: [DVec3; 2],
+}
+
+impl Plane {
+    pub(super) fn new(origin: DVec3, normal: DVec3) -> Self {
+        let (across, along) = normal.any_orthonormal_pair();
+        Self { origin, normal, axes: [across, along] }
+    }
+
+    /// The signed distance of a point.
+    pub(super) fn height(&self, point: DVec3) -> f64 {
+        (point - self.origin).dot(self.normal)
+    }
+}
+
+/// Most planes of a way.
+const MOST: usize = 2;
+
+/// A way from a point over one or two planes to a target.
+pub(super) struct Way<'a> {
+    pub(super) from: DVec3,
+    /// Of two, both normals point away from what lies between them.
+    pub(super) planes: &'a [Plane],
+    /// Of the media before each plane, and behind the last.
+    pub(super) indices: &'a [f64],
+    pub(super) target: Target,
+}
+
+/// A straight part of a way.
+#[derive(Clone, Copy, Default)]
+struct Part {
+    /// Its optical length; towards infinity how far it lies ahead.
+    length: f64,
+    /// How that changes with its end.
+    gradient: DVec3,
+    /// How the gradient does.
+    hessian: DMat3,
+}
+
+impl Part {
+    /// The way from `from` to `to` where the index is `index`; none if it has no length.
+    fn between(from: DVec3, to: DVec3, index: f64) -> Option<Self> {
+        let (distance, direction) = (from.distance(to), (to - from).try_normalize()?);
+        let along =
+            DMat3::from_cols(direction * direction.x, direction * direction.y, direction * direction.z);
+        let hessian = (DMat3::IDENTITY - along) * (index / distance);
+        Some(Self { length: index * distance, gradient: direction * index, hessian })
+    }
+
+    /// The last one.
+    fn last(from: DVec3, target: Target, index: f64) -> Option<Self> {
+        match target {
+            Target::Point(to) => Self::between(from, to, index),
+            Target::Direction(direction) => {
+                let length = -index * direction.dot(from);
+                Some(Self { length, gradient: direction * index, hessian: DMat3::ZERO })
+            }
+        }
+    }
+}
+
+/// The parts of a way through given points.
+struct Path {
+    points: [DVec3; MOST],
+    length: f64,
+    /// By the coordinates of the points in their planes.
+    gradient: DVec4,
+    hessian: DMat4,
+}
+
+impl Way<'_> {
+    /// The points on the planes; none where light cannot go this way. What follows the last plane's is of no meaning.
+    pub(super) fn solve(&self) -> Option<[DVec3; MOST]> {
+        let mut at = DVec4::ZERO;
+        let mut path = self.path(at)?;
+        for step in 0..STEPS {
+            if path.gradient.length() <= MISSED {
+                return Some(path.points);
+            }
+            if step >= FIRST_STEPS && self.is_outside(&path.points) {
+                return None;
+            }
+            let step = -(path.hessian.inverse() * path.gradient);
+            (at, path) = self.shorter(at, &path, step)?;
+        }
+        None
+    }
+
+    /// True where the way between two planes does not lie behind both of them: light that enters one leaves by the other.
+    fn is_outside(&self, points: &[DVec3; MOST]) -> bool {
+        match self.planes {
+            [first, last] => last.height(points[0]) >= 0.0 || first.height(points[1]) >= 0.0,
+            _ => false,
+        }
+    }
+
+    /// A point along `step` where the way is shorter by enough. Close to the end, lengths differ by less than they are rounded by,
+    /// but gradients do not.
+    fn shorter(&self, at: DVec4, path: &Path, step: DVec4) -> Option<(DVec4, Path)> {
+        let promised = path.gradient.dot(step);
+        (0..HALVINGS).find_map(|halvings| {
+            let part = 0.5f64.powi(halvings);
+            let found = self.path(at + step * part)?;
+            let is_shorter = found.length <= path.length + ENOUGH * part * promised;
+            let is_straighter = found.gradient.length() < 0.5 * path.gradient.length();
+            (is_shorter || is_straighter).then_some((at + step * part, found))
+        })
+    }
+
+    /// The way whose points have the coordinates `at`, two in each plane.
+    fn path(&self, at: DVec4) -> Option<Path> {
+        let (at, count) = (at.to_array(), self.planes.len());
+        let (mut points, mut parts) = ([self.from; MOST], [Part::default(); MOST + 1]);
+        for (i, plane) in self.planes.iter().enumerate() {
+            points[i] = self.start(plane) + plane.axes[0] * at[2 * i] + plane.axes[1] * at[2 * i + 1];
+            let before = if i == 0 { self.from } else { points[i - 1] };
+            parts[i] = Part::between(before, points[i], self.indices[i])?;
+        }
+        parts[count] = Part::last(points[count - 1], self.target, self.indices[count])?;
+        let length = parts.iter().map(|part| part.length).sum();
+        Some(Path { points, length, gradient: self.gradient(&parts), hessian: self.hessian(&parts) })
+    }
+
+    /// The direction in a plane that coordinate `number` of all is along, and the number of that plane.
+    fn axis(&self, number: usize) -> Option<(usize, DVec3)> {
+        Some((number / 2, self.planes.get(number / 2)?.axes[number % 2]))
+    }
+
+    fn gradient(&self, parts: &[Part; MOST + 1]) -> DVec4 {
+        DVec4::from_array(std::array::from_fn(|number| {
+            let along = |(i, axis): (usize, DVec3)| axis.dot(parts[i].gradient - parts[i + 1].gradient);
+            self.axis(number).map_or(0.0, along)
+        }))
+    }
+
+    /// 1 for coordinates that there are not, so that it can be inverted.
+    fn hessian(&self, parts: &[Part; MOST + 1]) -> DMat4 {
+        let entry = |a: usize, b: usize| {
+            let (Some((i, one)), Some((j, other))) = (self.axis(a), self.axis(b)) else {
+                return f64::from(u8::from(a == b));
+            };
+            let between =
+                if i == j { parts[i].hessian + parts[i + 1].hessian } else { -parts[i.max(j)].hessian };
+            one.dot(between * other)
+        };
+        DMat4::from_cols_array_2d(&std::array::from_fn(|a| std::array::from_fn(|b| entry(a, b))))
+    }
+
+    /// Where the straight way to the target crosses a plane, or would if it came from the other side.
+    fn start(&self, plane: &Plane) -> DVec3 {
+        let foot = |point: DVec3| point - plane.normal * plane.height(point);
+        match self.target {
+            Target::Direction(_) => foot(self.from),
+            Target::Point(to) => {
+                let (near, far) = (plane.height(self.from).abs(), plane.height(to).abs());
+                foot(self.from).lerp(foot(to), near / (near + far).max(f64::MIN_POSITIVE))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The sines of the angles on both sides of a plane, times the indices.
+    fn sines(before: DVec3, at: DVec3, after: DVec3, plane: &Plane, indices: [f64; 2]) -> [DVec3; 2] {
+        let along = |direction: DVec3| direction - plane.normal * direction.dot(plane.normal);
+        [along((at - before).normalize()) * indices[0], along((after - at).normalize()) * indices[1]]
+    }
+
+    /// Snell's law at both faces of a prism and of a pane, steep and grazing.
+    #[test]
+    fn light_is_refracted_as_snell_says() {
+        let pane = [Plane::new(DVec3::ZERO, DVec3::NEG_Z), Plane::new(DVec3::Z * 0.3, DVec3::Z)];
+        let prism = [pane[0], Plane::new(DVec3::Z * 0.5, DVec3::new(0.3, 0.1, 1.0).normalize())];
+        for planes in [pane, prism] {
+            for to in [DVec3::new(0.2, 0.4, 2.0), DVec3::new(-3.0, -5.0, 2.0), DVec3::new(-3e3, 1.0, 9e2)] {
+                let (from, indices) = (DVec3::new(0.1, -0.2, -1.0), [1.0, 1.5, 1.2]);
+                let way = Way { from, planes: &planes, indices: &indices, target: Target::Point(to) };
+                let [p, q] = way.solve().unwrap();
+                for [a, b] in
+                    [sines(from, p, q, &planes[0], [1.0, 1.5]), sines(p, q, to, &planes[1], [1.5, 1.2])]
+                {
+                    assert!(a.distance(b) < 1e-9, "{a} {b} to {to}");
+                }
+            }
+        }
+    }
+
+    /// A mirror shows what is before it as far behind it.
+    #[test]
+    fn mirrors_reflect() {
+        let (from, to) = (DVec3::new(0.0, 1.0, 0.0), DVec3::new(3.0, 2.0, 0.0));
+        let planes = [Plane::new(DVec3::X * 7.0, DVec3::Y)];
+        let way = Way { from, planes: &planes, indices: &[1.0, 1.0], target: Target::Point(to) };
+        assert!(way.solve().unwrap()[0].distance(DVec3::X) < 1e-9);
+        let direction = DVec3::new(1.0, 1.0, 0.0).normalize();
+        let way = Way { target: Target::Direction(direction), ..way };
+        assert!(way.solve().unwrap()[0].distance(DVec3::X) < 1e-9);
+    }
+
+    /// Light from the sun under water comes within a cone: from beyond there is no way.
+    #[test]
+    fn nothing_comes_from_beyond_the_critical_angle() {
+        let planes = [Plane::new(DVec3::ZERO, DVec3::Z)];
+        let way = |x: f64, indices: &'static [f64]| {
+            let target = Target::Direction(DVec3::new(x, 0.0, 1.0).normalize());
+            Way { from: -DVec3::Z, planes: &planes, indices, target }.solve()
+        };
+        assert!(way(100.0, &[1.5, 1.0]).is_some());
+        assert!(way(0.5, &[1.0, 1.5]).is_some());
+        assert!(way(100.0, &[1.0, 1.5]).is_none());
+    }
+}
