@@ -79,6 +79,8 @@ fn by_planes() {
     let block = json!({"type": "cube", "to_world": turned, "bsdf": {"type": GLASS}});
     agrees("block and point", &over_floor(&block, &bulb(), 4));
     agrees("block and sun", &over_floor(&block, &sunlight(), 4));
+    let inside_out = with(block, &[("flip_normals", json!(true))]);
+    agrees("block inside out", &over_floor(&inside_out, &bulb(), 4));
     let up = json!([{"type": "rotate", "axis": [1, 0, 0], "angle": -90}]);
     let water = json!({"type": "rectangle", "to_world": up, "bsdf": {"type": GLASS, "int_ior": 1.33}});
     agrees("water and point", &over_floor(&water, &bulb(), 3));

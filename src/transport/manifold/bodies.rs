@@ -3,7 +3,7 @@
 use super::{
     ball::{Course, Round},
     chain::{Chain, Link, MOST, Target},
-    flats::{Plane, Way},
+    flats::{self, Plane, Way},
 };
 use crate::{
     bsdf::{BsdfModel, Smooth},
@@ -16,15 +16,17 @@ use crate::{
 pub(super) struct Body {
     shape: u32,
     form: Form,
-    /// The index behind the surface over that before it, where the shading normal points; none of a mirror.
+    /// The index within it over that around it, of a single plane that behind it over that before it; none of a mirror.
     ratio: Option<f64>,
 }
 
 enum Form {
-    /// Planes, whose normals are shading normals. Together they enclose something, or there is one.
+    /// A plane, or several that enclose something, whose normals point outwards.
     Flats(Vec<(Plane, Primitive)>),
-    /// A ball; `turn` is 1 where its normals point outwards, else -1.
-    Ball { center: DVec3, radius: f64, turn: f64 },
+    Ball {
+        center: DVec3,
+        radius: f64,
+    },
 }
 
 impl Body {
@@ -34,11 +36,12 @@ impl Body {
     }
 
     fn of(scene: &Scene, shape: u32) -> Option<Self> {
-        let ratio = match scene.bsdf(shape).smooth()? {
+        let smooth = scene.bsdf(shape).smooth()?;
+        let (form, turn) = Form::of(&scene.geometry.shapes()[shape as usize])?;
+        let ratio = match smooth {
             Smooth::Mirror => None,
-            Smooth::Interface(ratio) => Some(f64::from(ratio)),
+            Smooth::Interface(ratio) => Some(f64::from(ratio).powf(turn)),
         };
-        let form = Form::of(&scene.geometry.shapes()[shape as usize])?;
         Some(Self { shape, form, ratio })
     }
 
@@ -46,9 +49,7 @@ impl Body {
     pub(super) fn chains(&self, from: DVec3, target: Target, found: &mut impl FnMut(&Chain)) {
         match &self.form {
             Form::Flats(flats) => self.over_flats(flats, from, target, found),
-            Form::Ball { center, radius, turn } => {
-                self.over_ball(*center, *radius, *turn, from, target, found);
-            }
+            Form::Ball { center, radius } => self.over_ball(*center, *radius, from, target, found),
         }
     }
 
@@ -71,11 +72,20 @@ impl Body {
             Self::over(flats, &links, &[index, after], from, target, found);
         }
         let Some(ratio) = self.ratio.filter(|_| flats.len() > 1) else { return };
-        for (first, _) in flats.iter().enumerate().filter(|(_, (plane, _))| plane.height(from) > 0.0) {
-            for (last, _) in flats.iter().enumerate().filter(|(_, (plane, _))| target.height(plane) > 0.0) {
-                if first != last {
-                    let links = [(first, Some(ratio)), (last, Some(1.0 / ratio))];
-                    Self::over(flats, &links, &[1.0, ratio, 1.0], from, target, found);
+        for (first, (entry, _)) in flats.iter().enumerate().filter(|(_, (plane, _))| plane.height(from) > 0.0)
+        {
+            for (last, (exit, _)) in
+                flats.iter().enumerate().filter(|(_, (plane, _))| target.height(plane) > 0.0)
+            {
+                let links = [(first, Some(ratio)), (last, Some(1.0 / ratio))];
+                match target {
+                    _ if first == last => {}
+                    Target::Direction(direction) => {
+                        if let Some(points) = flats::between(from, [*entry, *exit], ratio, direction) {
+                            found(&chain_over(flats, &links, points));
+                        }
+                    }
+                    Target::Point(_) => Self::over(flats, &links, &[1.0, ratio, 1.0], from, target, found),
                 }
             }
         }
@@ -98,33 +108,22 @@ impl Body {
         let mut planes = [flats[0].0; 2];
         links.iter().zip(&mut planes).for_each(|((number, _), plane)| *plane = flats[*number].0);
         let way = Way { from, planes: &planes[..links.len()], indices, target };
-        let Some(points) = way.solve() else { return };
-        let link = |((number, ratio), position): (&(usize, Option<f64>), DVec3)| Link {
-            position,
-            normal: flats[*number].0.normal,
-            curvature: 0.0,
-            ratio: *ratio,
-            primitive: *number,
-        };
-        let links: Vec<Link> = links.iter().zip(points).map(link).collect();
-        found(&Chain::new(&links));
+        if let Some(points) = way.solve() {
+            found(&chain_over(flats, links, points));
+        }
     }
 
     fn over_ball(
         &self,
         center: DVec3,
         radius: f64,
-        turn: f64,
         from: DVec3,
         target: Target,
         found: &mut impl FnMut(&Chain),
     ) {
-        // The index within the ball over that around it.
-        let ratio = self.ratio.map(|ratio| ratio.powf(turn));
-        for course in
-            courses(from.distance(center) < radius, target.is_within(center, radius), ratio.is_some())
-        {
-            let inside = ratio.unwrap_or(1.0);
+        let inside = self.ratio.unwrap_or(1.0);
+        let ends = [from.distance(center) < radius, target.is_within(center, radius)];
+        for course in courses(ends, self.ratio.is_some()) {
             let Some(round) = Round::new((center, radius, inside), from, target, course) else { continue };
             round.solve(&mut |points| {
                 let link = |(number, position): (usize, &DVec3)| Link {
@@ -161,6 +160,18 @@ impl Body {
     }
 }
 
+/// The chain over planes, by their numbers, with what happens there, through these points.
+fn chain_over(flats: &[(Plane, Primitive)], links: &[(usize, Option<f64>)], points: [DVec3; 2]) -> Chain {
+    let link = |((number, ratio), position): (&(usize, Option<f64>), DVec3)| Link {
+        position,
+        normal: flats[*number].0.normal,
+        curvature: 0.0,
+        ratio: *ratio,
+        primitive: *number,
+    };
+    Chain::new(&links.iter().zip(points).map(link).collect::<Vec<_>>())
+}
+
 /// The coordinates of a point that lies on a parallelogram.
 fn within(flat: &Flat, point: DVec3) -> Option<[f32; 2]> {
     let at = flat.coordinates(point);
@@ -170,25 +181,36 @@ fn within(flat: &Flat, point: DVec3) -> Option<[f32; 2]> {
 }
 
 impl Form {
-    /// None of what is made of other things.
-    fn of(shape: &Shape) -> Option<Self> {
+    /// The form of a shape, and 1 where its shading normals point outwards, else -1; none of what is made of other things.
+    fn of(shape: &Shape) -> Option<(Self, f64)> {
         match shape {
-            Shape::Parallelograms(_) | Shape::Disk(_) => (0..shape.primitive_count())
-                .map(|number| plane(shape, number))
-                .collect::<Option<_>>()
-                .map(Self::Flats),
+            Shape::Parallelograms(_) | Shape::Disk(_) => {
+                let flats = (0..shape.primitive_count()).map(|number| plane(shape, number));
+                flats.collect::<Option<_>>().map(Self::of_flats)
+            }
             Shape::Sphere(sphere) => {
                 let Primitive::Ball { center, radius } = shape.primitive(0) else { return None };
                 let above = center + Vec3::Z * radius;
                 let turn = f64::from(sphere.point_near(above).shading.normal.z.signum());
-                Some(Self::Ball { center: center.as_dvec3(), radius: f64::from(radius), turn })
+                Some((Self::Ball { center: center.as_dvec3(), radius: f64::from(radius) }, turn))
             }
             Shape::Cylinder(_) | Shape::Mesh(_) | Shape::Instance(_) => None,
         }
     }
+
+    /// Of planes that enclose something, about a point of it; of a single plane, outwards is where it faces.
+    fn of_flats(flats: Vec<(Plane, Primitive)>) -> (Self, f64) {
+        let middle = flats.iter().map(|(plane, _)| plane.origin).sum::<DVec3>() / flats.len() as f64;
+        let is_inside_out = flats.len() > 1 && flats[0].0.height(middle) > 0.0;
+        let turn = if is_inside_out { -1.0 } else { 1.0 };
+        let outwards = |(plane, primitive): (Plane, Primitive)| {
+            (Plane::new(plane.origin, plane.normal * turn), primitive)
+        };
+        (Self::Flats(flats.into_iter().map(outwards).collect()), turn)
+    }
 }
 
-/// The plane of a primitive, and that itself.
+/// The plane of a primitive through the middle of that, on the side of the shading normal, and the primitive itself.
 fn plane(shape: &Shape, number: usize) -> Option<(Plane, Primitive)> {
     let primitive = shape.primitive(number);
     let flat = match &primitive {
@@ -201,7 +223,7 @@ fn plane(shape: &Shape, number: usize) -> Option<(Plane, Primitive)> {
     let [u, v] = [flat.edge_u, flat.edge_v].map(|edge| edge.as_dvec3());
     let normal = u.cross(v).normalize();
     let normal = normal * normal.dot(shading.as_dvec3()).signum();
-    Some((Plane::new(flat.corner.as_dvec3(), normal), primitive))
+    Some((Plane::new(flat.corner.as_dvec3() + (u + v) * 0.5, normal), primitive))
 }
 
 impl Course {
@@ -215,8 +237,8 @@ impl Course {
     }
 }
 
-/// What light can do at a ball between a start and a target that are inside or outside.
-fn courses(starts_inside: bool, ends_inside: bool, transmits: bool) -> Vec<Course> {
+/// What light can do at a ball between a start and a target, of which is said whether they are inside.
+fn courses([starts_inside, ends_inside]: [bool; 2], transmits: bool) -> Vec<Course> {
     let course = |meetings| Course { meetings, enters: !starts_inside, leaves: !ends_inside };
     let within = 1..=if transmits { MOST } else { 0 };
     match (starts_inside, ends_inside) {

@@ -78,6 +78,15 @@ impl Chain {
     }
 }
 
+/// The direction of a ray that is refracted where the index beyond a surface over that before is `ratio`; none in total
+/// reflection.
+pub(super) fn refracted(direction: DVec3, normal: DVec3, ratio: f64) -> Option<DVec3> {
+    let (index, cosine) = (1.0 / ratio, direction.dot(normal));
+    let square = 1.0 - index * index * (1.0 - cosine * cosine);
+    let along = square.max(0.0).sqrt().copysign(cosine) - index * cosine;
+    (square > 0.0).then(|| direction * index + normal * along)
+}
+
 /// A ray, and how it changes with the direction in which it set out (Igehy 1999).
 struct Beam {
     origin: DVec3,
@@ -125,18 +134,14 @@ impl Beam {
             return Some(());
         };
         let index = 1.0 / ratio;
-        let square = 1.0 - index * index * (1.0 - cosine * cosine);
-        if square <= 0.0 {
-            return None;
-        }
-        let beyond = square.sqrt().copysign(cosine);
+        self.direction = refracted(direction, normal, ratio)?;
+        let beyond = self.direction.dot(normal);
         let along = beyond - index * cosine;
         self.directions = [0, 1].map(|i| {
             let (normals, cosines) = turned(i);
             let changed = (index * index * cosine / beyond - index) * cosines;
             self.directions[i] * index + normal * changed + normals * along
         });
-        self.direction = direction * index + normal * along;
         Some(())
     }
 }
