@@ -94,7 +94,7 @@ fn unreached(scene: &Scene, options: &Options) -> String {
     let least = options.min_depth;
     match kinds.iter().min_by_key(|kind| kind.by_bdpt as u8) {
         Some(kind) if kind.by_bdpt == Share::None => format!("no integrator reaches {}", kind.light),
-        Some(kind) if is_bdpt => format!("bdpt reaches a part of {} alone", kind.light),
+        Some(kind) if is_bdpt => format!("bdpt reaches only a part of {}", kind.light),
         Some(kind) => format!("these strategies do not reach {}; bdpt does", kind.light),
         None if least > 1 => {
             format!(

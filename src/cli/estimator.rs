@@ -150,10 +150,10 @@ pub struct Estimator {
 
     /// Render smooth glass and metal as slightly rough, by this alpha of Beckmann's microfacets, from 0.0001 to 0.5
     ///
-    /// Light that no strategy samples where surfaces are smooth (a lamp without extent, glass, a place, glass, the camera) then
-    /// reaches the image, which is biased: views by way of glass are blurred, and caustics too, by about alpha radians. A
-    /// study of several alphas beside each other (--contender "soft: --soften 0.01") shows how much. Of thindielectric and plastic
-    /// nothing changes.
+    /// Some light is sampled by no strategy where surfaces are smooth: it goes from a lamp without extent by way of glass to a
+    /// place, and from there by way of glass to the camera. With this option it reaches the image. The image is biased: what is
+    /// seen by way of glass is blurred by about alpha radians, and so are caustics. A study shows how much
+    /// (--contender "soft: --soften 0.01"). The surfaces thindielectric and plastic stay as they are.
     #[arg(long, value_name = "ALPHA", value_parser = soften, allow_negative_numbers = true)]
     pub soften: Option<f64>,
 

@@ -35,7 +35,7 @@ pub(super) struct Plan {
 }
 
 /// What of it connections by way of smooth surfaces find.
-const FOLLOWED: &str = "but for what a rectangle, disk, cube or sphere sends on by itself, at up to 3 points (--soften 0.01 reaches all, with a bias)";
+const FOLLOWED: &str = "but for what a rectangle, disk, cube or sphere sends on by itself, at up to 3 points (--soften 0.01 reaches it by dielectric and conductor, with a bias)";
 
 impl Plan {
     /// That of a render of `setup` by `settings`, as a pilot has `chosen` if there was one.
@@ -154,7 +154,9 @@ impl Plan {
                 Share::All => "bdpt reaches it",
                 Share::Some if algorithm == Algorithm::Bdpt && whole => FOLLOWED,
                 Share::Some => "bdpt reaches a part of it",
-                Share::None => "no integrator does (--soften 0.01 does, with a bias)",
+                Share::None => {
+                    "no integrator does (--soften 0.01 does by dielectric and conductor, with a bias)"
+                }
             };
             format!("not reached by {by}: {light}; {who}")
         };

@@ -3,10 +3,10 @@
 //! The error is that of relMSE, whose denominators are squares of the true image. A pixel's own mean is a bad stand-in for
 //! it where few samples carry much light: the sample that makes the variance makes the mean too, and the quotient of the two
 //! is at most 1, however far such samples are above what is around them. Hence a pixel's mean counts only as far as the
-//! means of its neighbours differ by more than their noise (Lee 1980); else theirs does, and theirs only as far as they
-//! differ from what is around them, and so on to the whole image: where nine pixels of ten have found no light yet, no nine
-//! of them say how bright the tenth is. A small lamp in view is no such sample, which only a look there can tell: pixels
-//! that carry much of the error are looked at.
+//! means of its neighbours differ by more than their noise (Lee 1980); else theirs does. The mean of the neighbours counts in
+//! the same way against what is around them, and so on to the whole image: where nine pixels of ten have found no light yet,
+//! eight neighbours say nothing. A small lamp in view is no such sample, which only a look there can tell: pixels that carry
+//! much of the error are looked at.
 
 use crate::math::relative::Relative;
 use rayon::prelude::*;

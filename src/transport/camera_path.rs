@@ -100,6 +100,7 @@ impl<P: Profile, R: Observer> Visitor<P> for CameraPath<'_, P, R> {
     #[inline]
     fn depart(&mut self, departure: &Departure<P::MisSums>) {
         self.previous = departure.position;
+        self.is_linked &= departure.edges > 0;
         if P::MEDIA && departure.edges == 0 {
             (self.pdf_fwd, self.first) = (departure.pdf_fwd, None);
         }

@@ -200,7 +200,7 @@ fn light_that_is_not_reached_is_told_with_who_reaches_it() {
     for line in [
         format!("not reached by pt: {caustics}; bdpt reaches it\n"),
         format!("not reached by pt: {caustics}, seen by way of smooth glass; bdpt reaches a part of it\n"),
-        "not reached by pt: light of point emitters that comes to the camera by way of smooth glass alone; no integrator does (--soften 0.01 does, with a bias)\n".to_owned(),
+        "not reached by pt: light of point emitters that comes to the camera by way of smooth glass alone; no integrator does (--soften 0.01 does by dielectric and conductor, with a bias)\n".to_owned(),
     ] {
         assert!(of_pt.contains(&line), "no {line} in {of_pt}");
     }

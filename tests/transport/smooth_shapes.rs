@@ -113,3 +113,33 @@ fn by_beams_and_spots() {
     agrees("beam", &over_floor(&ball(GLASS), &beam([0.2, 2.0, 0.1], [0.0, -1.0, 0.0], 0.4, 5.0), 5));
     agrees("spot", &over_floor(&ball(GLASS), &spot([0.5, 2.0, 0.3], [0.0, 0.0, 0.0], 9.0), 5));
 }
+
+/// A primary ray that continues twice, from a collision in fog and from the glass behind it, is two walks: what the first can be
+/// connected to is nothing to the second.
+#[test]
+fn behind_fog_that_forces_collisions() {
+    let pane = json!({"type": "rectangle", "to_world": place([1.5, 1.5, 1.0], [0.2, 0.6, 1.6]), "bsdf": {"type": GLASS}});
+    let mut parts = vec![
+        ("integrator", depth(6)),
+        ("sensor", camera([0.3, 1.2, 2.5], [0.0, -0.5, 0.0], 8)),
+        ("floor", floor(-0.7, 2.0, 0.6)),
+        ("shape", ball(GLASS)),
+        ("lamp", bulb()),
+        ("pane", pane),
+        ("bank", null_box([-1.0, -0.5, 1.9], [1.5, 2.0, 2.3], Some(medium(0.3, 0.5, 0.0)))),
+    ];
+    let stage = Stage::new(&scene(&parts));
+    let plain = stage.renders(Strategies::BDPT, 64, 0..SEEDS);
+    let unfollowed =
+        stage.renders(Strategies::BDPT.without(StrategyKind::Connection), 64, 2000..2000 + SEEDS);
+    parts[0].1 = with(depth(6), &[("forced_interaction", json!(true))]);
+    let stage = Stage::new(&scene(&parts));
+    let forced = stage.renders(Strategies::BDPT, 64, 1000..1000 + SEEDS);
+    let mut claims = Claims::new();
+    let sample = |images: &[Vec<Spectrum>]| Sample::of(images, stage.width());
+    claims.equal("forced collisions against others", &sample(&forced), &sample(&plain));
+    claims.settle();
+    let mean =
+        |images: &[Vec<Spectrum>]| images.iter().flatten().map(|pixel| f64::from(pixel.x)).sum::<f64>();
+    assert!(mean(&unfollowed) < 0.9 * mean(&plain), "nothing comes by way of the ball and the pane");
+}

@@ -36,21 +36,14 @@ pub(super) struct Round {
     radius: f64,
     /// Distance of the start from the centre.
     from: f64,
-    /// Across that.
-    target: Target2,
+    /// In the plane: along the direction to the start, across it, 0.
+    target: Target,
     /// Index inside over that outside.
     ratio: f64,
     course: Course,
     /// Towards the start, and across it in the plane.
     axes: [DVec3; 2],
     center: DVec3,
-}
-
-/// A target in the plane.
-#[derive(Clone, Copy)]
-enum Target2 {
-    Point([f64; 2]),
-    Direction([f64; 2]),
 }
 
 /// True if a function of these values, one after the other, comes closest to 0 between the first and the last without a
@@ -83,10 +76,10 @@ impl Round {
         };
         let across = to - along * along.dot(to);
         let across = across.try_normalize().unwrap_or_else(|| along.any_orthonormal_vector());
-        let flat = [along.dot(to), across.dot(to)];
+        let flat = DVec3::new(along.dot(to), across.dot(to), 0.0);
         let target = match target {
-            Target::Point(_) => Target2::Point(flat),
-            Target::Direction(_) => Target2::Direction(flat),
+            Target::Point(_) => Target::Point(flat),
+            Target::Direction(_) => Target::Direction(flat),
         };
         Some(Self { radius, from: distance, target, ratio, course, axes: [along, across], center })
     }
@@ -223,8 +216,7 @@ impl Round {
             (true, false, false) => angle + incidence,
             _ => angle + PI - incidence,
         };
-        let missed = self.missed_by([angle.cos() * self.radius, angle.sin() * self.radius], ahead)?;
-        Some(Flight { angles, missed })
+        Some(Flight { angles, missed: self.missed_by(angle, ahead) })
     }
 
     fn start_outside(&self, place: f64) -> (f64, f64) {
@@ -238,14 +230,10 @@ impl Round {
         (ahead - incidence, incidence)
     }
 
-    /// Sine and cosine of the angle between the direction `ahead` from a point and that to the target.
-    fn missed_by(&self, [x, y]: [f64; 2], ahead: f64) -> Option<[f64; 2]> {
-        let (sine, cosine) = ahead.sin_cos();
-        let [u, v] = match self.target {
-            Target2::Point([u, v]) => [u - x, v - y],
-            Target2::Direction(direction) => direction,
-        };
-        let length = u.hypot(v);
-        (length > 0.0).then(|| [(cosine * v - sine * u) / length, (cosine * u + sine * v) / length])
+    /// Sine and cosine of the angle between the direction `ahead`, in which light leaves the circle, and that to the target.
+    fn missed_by(&self, angle: f64, ahead: f64) -> [f64; 2] {
+        let at = |angle: f64| DVec3::new(angle.cos(), angle.sin(), 0.0);
+        let (to, ahead) = (self.target.seen_from(at(angle) * self.radius), at(ahead));
+        [ahead.cross(to).z, ahead.dot(to)]
     }
 }

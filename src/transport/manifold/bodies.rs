@@ -71,21 +71,30 @@ impl Body {
             let after = if links[0].1.is_some() { next } else { index };
             Self::over(flats, &links, &[index, after], from, target, found);
         }
-        let Some(ratio) = self.ratio.filter(|_| flats.len() > 1) else { return };
-        for (first, (entry, _)) in flats.iter().enumerate().filter(|(_, (plane, _))| plane.height(from) > 0.0)
-        {
-            for (last, (exit, _)) in
-                flats.iter().enumerate().filter(|(_, (plane, _))| target.height(plane) > 0.0)
-            {
-                let links = [(first, Some(ratio)), (last, Some(1.0 / ratio))];
-                match target {
-                    _ if first == last => {}
-                    Target::Direction(direction) => {
-                        if let Some(points) = flats::between(from, [*entry, *exit], ratio, direction) {
-                            found(&chain_over(flats, &links, points));
-                        }
-                    }
-                    Target::Point(_) => Self::over(flats, &links, &[1.0, ratio, 1.0], from, target, found),
+        if let Some(ratio) = self.ratio.filter(|_| flats.len() > 1) {
+            Self::across(flats, ratio, from, target, found);
+        }
+    }
+
+    /// Light that enters what the planes enclose by one of them and leaves it by another.
+    fn across(
+        flats: &[(Plane, Primitive)],
+        ratio: f64,
+        from: DVec3,
+        target: Target,
+        found: &mut impl FnMut(&Chain),
+    ) {
+        let all = || flats.iter().map(|(plane, _)| *plane).enumerate();
+        let entries = all().filter(|(_, plane)| plane.height(from) > 0.0);
+        let exits = || all().filter(|(_, plane)| target.height(plane) > 0.0);
+        let pairs = entries.flat_map(|entry| exits().map(move |exit| (entry, exit)));
+        for ((first, entry), (last, exit)) in pairs.filter(|((first, _), (last, _))| first != last) {
+            let links = [(first, Some(ratio)), (last, Some(1.0 / ratio))];
+            match target {
+                Target::Point(_) => Self::over(flats, &links, &[1.0, ratio, 1.0], from, target, found),
+                Target::Direction(direction) => {
+                    let points = flats::between(from, [entry, exit], ratio, direction);
+                    points.into_iter().for_each(|points| found(&chain_over(flats, &links, points)));
                 }
             }
         }

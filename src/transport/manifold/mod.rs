@@ -70,15 +70,14 @@ fn draw<'a, T>(all: &'a [T], stream: &mut Stream) -> &'a T {
 
 impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
     /// Connects `vertex` to a lamp by way of a smooth shape, one of each drawn at random, if nothing else makes such paths.
-    #[cold]
+    #[inline(never)]
     pub(super) fn connect_bent(
         &mut self,
         manifold: &Manifold,
         vertex: &Vertex<P::MisSums>,
         stream: &mut Stream,
     ) {
-        let is_linked = vertex.connections > 0.0;
-        self.is_linked = is_linked || (self.is_linked && vertex.subpath.edges > 1);
+        self.is_linked |= vertex.connections > 0.0;
         if self.is_linked {
             return;
         }
