@@ -33,6 +33,8 @@ pub mod guide;
 
 pub mod transport;
 
+pub mod first_pass;
+
 pub mod passes;
 
 pub mod learning;

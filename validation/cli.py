@@ -7,7 +7,7 @@ from pathlib import Path
 from tyndall.failure import Failure
 from tyndall.scene import open_scene
 from tyndall import judging
-from validation import assets, bias, cells, compare, comparison_page, coverage, efficiency, full, gallery, growth, instructions, intervals, lottery
+from validation import assets, bias, cells, compare, comparison_page, coverage, efficiency, first_passes, full, gallery, growth, instructions, intervals, lottery
 from validation import matrix, package_tests, page, progressive, rays, reach, record, references, selftest, thresholds, truths
 from validation.cluster import cli as cluster
 from validation.compare import Effort
@@ -21,6 +21,7 @@ MEASURES = {
     "growth": (growth, "How the cost of a sample grows with depth, triangles, voxels, lights, pixels and threads."),
     "bias": (bias, "Bias of ray marching against its step, in a cosine cloud and a noise cloud."),
     "progressive": (progressive, "Progressive pictures against as many pixels on a regular grid, on four scenes."),
+    "first_passes": (first_passes, "First passes, and what is made of them, beside other guides and none: relMSE after the same seconds."),
     "thresholds": (thresholds, "P03T's tests A-F at its own thresholds: time with a guide and without, learning included."),
     "record": (record, "Renews the reports that are out of date, and the tables that pages take from them."),
     "intervals": (intervals, "Whether printed intervals hold the truth as often as they say, and whether printed noise is the image's."),

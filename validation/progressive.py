@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from tyndall.commands import diff
+from tyndall.rendering import Rendering
 from tyndall.rendering import run as render
 from validation.files import write_report
 from validation.places import REPORTS, SCENES
@@ -25,6 +26,10 @@ CASES = {
 }
 PARTS = (0.05, 0.1, 0.2)
 METHODS = ("straight", "regions")
+TRUTH = 8
+"""Samples of the truth, over those of a pixel that is shaded."""
+EQUAL = (*METHODS, "all", "denoised")
+"""What is compared at as many samples in all."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +43,9 @@ class Row:
     flip: dict[str, float]
     seconds: dict[str, float]
     """Of both methods, and of all pixels."""
+
+    equal: dict[str, dict[str, float]]
+    """relMSE, FLIP and seconds of as many samples in all, of some of the pixels or of all, against a truth with samples of its own."""
 
     @property
     def is_better(self) -> bool:
@@ -64,6 +72,7 @@ def rows_of(scene: Path, strategies: dict[str, Any], options: argparse.Namespace
     """Those of one scene."""
     given: dict[str, Any] = {**strategies, "integrator": "bdpt", "spp": options.spp, "size": options.size, "threads": options.threads}
     whole = render(scene, **given)
+    truth = render(scene, **{**given, "spp": TRUTH * options.spp, "seed": 1})
     found = []
     for part in PARTS:
         few = {method: render(scene, progressive=method, fraction=part, **given) for method in METHODS}
@@ -76,9 +85,27 @@ def rows_of(scene: Path, strategies: dict[str, Any], options: argparse.Namespace
                 {name: measure["radiance"]["relmse"] for name, measure in measures.items()},
                 {name: measure["flip"] for name, measure in measures.items()},
                 {**{method: one.render_seconds for method, one in few.items()}, "all": whole.render_seconds},
+                equal(few, thin(scene, part, given), truth.image),
             )
         )
     return found
+
+
+def thin(scene: Path, part: float, given: dict[str, Any]) -> Rendering:
+    """All pixels at as many samples as this part of them has in all, with what a denoiser wants."""
+    return render(scene, **{**given, "spp": max(1, round(part * given["spp"])), "features": True})
+
+
+def equal(few: dict[str, Rendering], thin: Rendering, truth: np.ndarray) -> dict[str, dict[str, float]]:
+    """See `Row.equal`. Seconds are without those of the denoiser."""
+    images = {**{method: one.image for method, one in few.items()}, "all": thin.image, "denoised": np.asarray(thin.picture.denoised())}
+    measures = {name: diff(image, truth) for name, image in images.items()}
+    seconds = {**{method: one.render_seconds for method, one in few.items()}, "all": thin.render_seconds, "denoised": thin.render_seconds}
+    return {
+        "relmse": {name: measure["radiance"]["relmse"] for name, measure in measures.items()},
+        "flip": {name: measure["flip"] for name, measure in measures.items()},
+        "seconds": seconds,
+    }
 
 
 def gridded(image: np.ndarray, part: float) -> np.ndarray:
@@ -104,8 +131,30 @@ def page(rows: list[Row], options: argparse.Namespace) -> str:
         "interpolated bilinearly. The noise of the pixels that are not shaded counts as error for all. Seconds are of the render alone; "
         "the machine may have been busy with other work.\n\n"
         "| scene | pixels | relMSE: grid | straight | regions | FLIP: grid | straight | regions | seconds: straight | regions | all pixels |\n"
-        "|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows))
+        "|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(line, rows)) + "\n"
+        f"{verdict(rows)} The table has the errors against a truth of {TRUTH * options.spp} samples of each pixel with a seed of its own. `all` is all pixels at as many "
+        "samples in all, `denoised` the same by Open Image Denoise with albedo and normals; its own time is not in the seconds.\n\n"
+        "| scene | pixels | relMSE: straight | regions | all | denoised | FLIP: straight | regions | all | denoised | seconds: straight | regions | all |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n" + "".join(map(equal_line, rows))
     )
+
+
+def verdict(rows: list[Row]) -> str:
+    """How often the better method is nearer to the truth than all pixels are, plain and denoised."""
+
+    def wins(measure: str, other: str) -> int:
+        return sum(min(row.equal[measure][method] for method in METHODS) < row.equal[measure][other] for row in rows)
+
+    parts = [f"than all pixels {'denoised' if other == 'denoised' else 'as they are'} in {wins('relmse', other)} by relMSE and in {wins('flip', other)} by FLIP"
+             for other in ("all", "denoised")]
+    return f"At as many samples in all, the better method is nearer to the truth {', and '.join(parts)}, of {len(rows)} rows."
+
+
+def equal_line(row: Row) -> str:
+    """Of the second table."""
+    errors = [f"{row.equal[measure][name]:.3f}" for measure in ("relmse", "flip") for name in EQUAL]
+    seconds = [f"{row.equal['seconds'][name]:.1f}" for name in (*METHODS, "all")]
+    return f"| {' | '.join([f'`{row.scene}`', f'{100 * row.part:.0f} %', *errors, *seconds])} |\n"
 
 
 def line(row: Row) -> str:

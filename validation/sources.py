@@ -8,7 +8,7 @@ from pathlib import Path
 
 from validation.places import ROOT
 
-PARTS = ("transport", "learning", "medium", "scene/lights", "bsdf")
+PARTS = ("transport", "learning", "guide", "first_pass", "medium", "scene/lights", "bsdf")
 """Folders of `src`."""
 NO_CODE = re.compile(r"^#\[cfg\(test\)\]\nmod tests \{.*|//[^\n]*|\s+", re.DOTALL | re.MULTILINE)
 """Tests in a file, which end it, comments, and white space."""

@@ -50,7 +50,7 @@ impl Estimator {
         let place = if self.min_depth.is_some() { "--min-depth" } else { "the scene's min_depth" };
         match options.algorithm {
             Algorithm::Fog => Ok(()),
-            Algorithm::Gather if options.min_depth > 1 => {
+            Algorithm::Gather | Algorithm::FirstPass if options.min_depth > 1 => {
                 let (expected, remedy) =
                     ("0 or 1, for the preview gather", "choose --integrator bdpt, pt or lt");
                 Err(Error::new(place, expected, options.min_depth.to_string(), remedy))

@@ -19,8 +19,8 @@ use crate::{
     scene::build::Setup,
     settings::Overrides,
     transport::{
-        Algorithm, Connections, Effort, Guiding, Heuristic, Options, Sky, Strategies, equiangular_applies,
-        needs::Needs, profiles::ProfileName, strategy::StrategyKind,
+        Algorithm, Connections, Effort, FirstPass, Guiding, Heuristic, Options, Sky, Strategies,
+        equiangular_applies, needs::Needs, profiles::ProfileName, strategy::StrategyKind,
     },
 };
 use clap::{Args, ValueEnum};
@@ -35,8 +35,9 @@ pub struct Estimator {
     /// Light transport algorithm [default: the scene's integrator]
     ///
     /// bdpt: bidirectional path tracing; pt: path tracing from the camera; lt: light tracing (particle tracing)
-    /// from the emitters; gather: a preview by path tracing that ends where it scatters for the second time, in radiance that is
-    /// learnt in seconds: biased, by blur, and far less noisy than pt where surfaces light each other, but noisier in a dense cloud; fog: a preview of the first visible surfaces without
+    /// from the emitters; first-pass: a preview of a coarse solution in elements of surfaces and media, made in seconds: biased, by
+    /// blur; gather: a preview by path tracing that ends where it scatters for the second time, in a first pass: biased, by blur, and far less
+    /// noisy than pt where surfaces light each other, but noisier in a dense cloud; fog: a preview of the first visible surfaces without
     /// shadows, behind fog of constant radiance; 4 samples per pixel are enough. In scenes with the integrator single_scattering or
     /// non_scattering its restriction of media still applies, unless --scattering says otherwise. Mitsuba's path, volpath and
     /// volpathmis are pt here, its ptracer is lt.
@@ -102,9 +103,22 @@ pub struct Estimator {
 
     /// How a guide stores directions, for comparison [default: the scene's, or quadtree]
     ///
-    /// quadtree: finer where much light comes from; bins: 16 x 16 everywhere; haar: by wavelets. The expected image is the same.
+    /// quadtree: finer where much light comes from; bins: 16 x 16 everywhere; haar: by wavelets; links: by the elements that light comes
+    /// from in a first pass (P03T sec. 5.2.3), for pt. The expected image is the same.
     #[arg(long, value_name = "NAME", value_parser = one_of(&Basis::NAMES), help_heading = heading::STUDIES)]
     pub basis: Option<Basis>,
+
+    /// How the first pass of the integrators first-pass and gather is solved [default: the scene's, else walks for gather, particles
+    /// for first-pass]
+    ///
+    /// walks: by walks from the camera, in cells where they came; particles: by particles from element to element, which pass mirrors and glass (P03T sec. 4.3); links: by links between
+    /// elements and clusters, most of them where most light goes (P03T sec. 4.2).
+    #[arg(long, value_name = "NAME", value_parser = one_of(&FirstPass::NAMES))]
+    pub first_pass: Option<FirstPass>,
+
+    /// With the integrator first-pass, show each element in one colour, not interpolated
+    #[arg(long)]
+    pub flat: bool,
 
     /// Maximum number of segments of a path, as Mitsuba's max_depth: 1 shows emitters only, -1 means no limit
     /// [default: the scene's]
@@ -282,6 +296,8 @@ impl Estimator {
             strategies,
             effort,
             basis: self.basis.unwrap_or(scene.basis),
+            first_pass: self.first_pass(scene, algorithm),
+            flat: self.flat || scene.flat,
             heuristic,
             max_depth,
             min_depth: self.min_depth.unwrap_or(scene.min_depth),
@@ -321,6 +337,25 @@ impl Estimator {
         self.starts == Some(true) && strategies.need_light_walks()
     }
 
+    fn first_pass(&self, scene: Options, algorithm: Algorithm) -> FirstPass {
+        let needless = [
+            (
+                self.first_pass.is_some() && !algorithm.ends_in_first_pass(),
+                "--first-pass",
+                "no path ends in a first pass",
+            ),
+            (
+                self.flat && algorithm != Algorithm::FirstPass,
+                "--flat",
+                "only the integrator first-pass shows elements",
+            ),
+        ];
+        for (_, flag, why) in needless.iter().filter(|(is_needless, ..)| *is_needless) {
+            complain(&format!("warning: {flag} has no effect: {why}"));
+        }
+        self.first_pass.unwrap_or(scene.first_pass)
+    }
+
     fn warn_of_basis(&self, settings: &Settings) {
         if self.basis.is_some() && !settings.options.effort.is_guided() {
             complain("warning: --basis has no effect: walks follow no guide");
@@ -331,11 +366,13 @@ impl Estimator {
         let guide = match (algorithm, self.guide.unwrap_or(scene.effort.guide)) {
             (Algorithm::Fog, _) => Guiding::Never,
             (Algorithm::Gather, Guiding::Usual) => Guiding::Auto,
+            (Algorithm::FirstPass, Guiding::Usual) => Guiding::Never,
             (_, said) => said,
         };
-        let gathers = algorithm == Algorithm::Gather;
+        let gathers = algorithm.ends_in_first_pass();
+        let place = format!("--integrator {}", algorithm.name());
         let (place, remedy) = match gathers {
-            true => ("--integrator gather", "choose --heuristic balance"),
+            true => (place.as_str(), "choose --heuristic balance"),
             false => ("--guide", "choose --heuristic balance, or give --guide never"),
         };
         let is_wanted = matches!(guide, Guiding::Auto | Guiding::Always);
@@ -367,10 +404,10 @@ impl Estimator {
     }
 
     fn forced_interaction(&self, setup: &Setup, algorithm: Algorithm, strategies: Strategies) -> bool {
-        let gathers = algorithm == Algorithm::Gather;
+        let gathers = algorithm.ends_in_first_pass();
         let by_camera = strategies.emitter_hit || strategies.next_event || strategies.connection;
         let why_not = match by_camera {
-            _ if gathers => Some("the integrator gather forces none"),
+            _ if gathers => Some("previews force none"),
             false => Some("no strategy in use traces camera subpaths"),
             true => (!Needs::of(&setup.scene, false).media).then_some("the scene has no media"),
         };
@@ -393,8 +430,8 @@ impl Estimator {
         if self.strategies.is_empty() {
             return Ok(all);
         }
-        if self.algorithm(setup) == Algorithm::Gather {
-            let found = "the integrator gather, which leaves none out";
+        if self.algorithm(setup).ends_in_first_pass() {
+            let found = "a preview, which leaves none out";
             return Err(Error::new(
                 "--strategies",
                 "an integrator whose strategies may be chosen",

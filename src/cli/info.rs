@@ -244,8 +244,17 @@ fn describe_integrator(name: &str, options: &Options, restriction: Restriction) 
     let Options { algorithm, heuristic, max_depth, min_depth, .. } = *options;
     match algorithm {
         Algorithm::Fog => return "fog, a preview of first surfaces".to_owned(),
+        Algorithm::FirstPass => {
+            return format!(
+                "first-pass, a preview: the first pass by {}",
+                options.first_pass.by(options.algorithm).name()
+            );
+        }
         Algorithm::Gather => {
-            return "gather, a preview by paths that end in radiance learnt beforehand".to_owned();
+            return format!(
+                "gather, a preview by paths that end in a first pass by {}",
+                options.first_pass.by(options.algorithm).name()
+            );
         }
         _ => {}
     }

@@ -11,7 +11,7 @@ use crate::{
     render::{Image, Precision},
     sampling::Basis,
     scene::build::Setup,
-    transport::{Algorithm, Connections, Options, Sky},
+    transport::{Connections, Options, Sky},
 };
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -74,8 +74,9 @@ fn extend(settings: &mut Value, setup: &Setup, options: &Options) {
     if options.connections == Connections::All {
         settings["connections"] = "all".into();
     }
-    if options.algorithm == Algorithm::Gather {
-        settings["preview"] = "gather".into();
+    if options.algorithm.ends_in_first_pass() {
+        settings["preview"] = options.algorithm.name().into();
+        settings["first_pass"] = options.first_pass.by(options.algorithm).name().into();
     }
     if options.effort.learnt_starts && settings["chosen_by_pilot"].is_null() {
         settings["learnt_starts"] = true.into();

@@ -1,7 +1,10 @@
 //! Directions that walks should take from the places of a cell: how many of them aim at each portal, a table of others, and how
 //! many are left to the BSDF or the phase function.
 
-use super::{Lesson, Portal};
+use super::{
+    Lesson, Portal,
+    links::{Aims, Links},
+};
 use crate::{
     math::{Vec3, warp},
     sampling::{
@@ -29,19 +32,37 @@ pub(super) struct Directions {
     /// Those that aim at portals.
     aimed: Vec<(f32, Portal)>,
     /// That of a table, if there is one.
-    tabled: Option<(f32, Quadtree)>,
+    tabled: Option<(f32, Table)>,
+}
+
+/// Directions that aim at no portal.
+#[derive(Clone, Debug)]
+enum Table {
+    /// Those that walks took.
+    Learnt(Quadtree),
+    /// Those to senders of links.
+    Linked(Aims),
+}
+
+/// What tables are made of.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tabulator<'a> {
+    pub basis: Basis,
+    /// Those of [`Basis::Links`].
+    pub links: Option<&'a Links>,
 }
 
 impl Directions {
     /// None where directions are better left to the BSDF or the phase function.
-    pub(super) fn learn(lessons: &[&Lesson], portals: &[Portal], basis: Basis) -> Option<Self> {
+    pub(super) fn learn(lessons: &[&Lesson], portals: &[Portal], tabulator: Tabulator<'_>) -> Option<Self> {
         let aimed = aimed(lessons, portals);
         let rest = 1.0 - aimed.iter().map(|(share, _)| share).sum::<f32>();
         let is_aimed = |lesson: &&Lesson| portals.iter().any(|portal| portal.outermost().is_crossed(lesson));
         let others: Vec<&Lesson> = lessons.iter().copied().filter(|lesson| !is_aimed(lesson)).collect();
         let is_known = effective(others.iter().map(|lesson| lesson.weight)) >= ENOUGH;
-        let a = if is_known { part_unguided(&others, basis) } else { 1.0 };
-        let tabled = (a < 1.0).then(|| (rest * (1.0 - a), table(others.into_iter(), basis)));
+        let a = if is_known { part_unguided(&others, tabulator) } else { 1.0 };
+        let tabled = if a < 1.0 { tabulator.table(&others) } else { None };
+        let tabled = tabled.map(|table| (rest * (1.0 - a), table));
         let known = Self { unguided: rest * a, aimed, tabled };
         (known.unguided < 1.0).then_some(known)
     }
@@ -50,7 +71,8 @@ impl Directions {
     #[inline]
     pub(super) fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
         let aimed = self.aimed.iter().map(|(share, portal)| share * portal.pdf(position, direction));
-        let tabled = self.tabled.as_ref().map_or(0.0, |(share, table)| share * pdf(table, direction));
+        let tabled =
+            self.tabled.as_ref().map_or(0.0, |(share, table)| share * table.pdf(position, direction));
         tabled + aimed.sum::<f32>()
     }
 
@@ -68,7 +90,7 @@ impl Directions {
             }
             u -= share;
         }
-        self.tabled.as_ref().map(|(_, table)| warp::to_sphere(table.sample(stream.square())))
+        self.tabled.as_ref().map(|(_, table)| table.sample(position, stream))
     }
 
     /// Memory that it takes (bytes).
@@ -93,13 +115,16 @@ fn aimed(lessons: &[&Lesson], portals: &[Portal]) -> Vec<(f32, Portal)> {
     aimed
 }
 
-/// a, by the second moment that what one half of the `lessons` tells has where the other half guides.
-fn part_unguided(lessons: &[&Lesson], basis: Basis) -> f32 {
-    let half = |fold| lessons.iter().copied().filter(move |lesson| lesson.fold == fold);
-    let tables = [1, 0].map(|other| table(half(other), basis));
+/// a, by the second moment that what one half of the `lessons` tells has where the other half guides; 1 where nothing does.
+fn part_unguided(lessons: &[&Lesson], tabulator: Tabulator<'_>) -> f32 {
+    let half = |fold| lessons.iter().copied().filter(|lesson| lesson.fold == fold).collect::<Vec<_>>();
+    let [Some(even), Some(odd)] = [1, 0].map(|other| tabulator.table(&half(other))) else { return 1.0 };
+    let tables = [even, odd];
     let known = lessons.iter().filter(|lesson| lesson.unguided > 0.0);
     let ratios: Vec<_> = known
-        .map(|lesson| (lesson.weight, pdf(&tables[lesson.fold], lesson.direction) / lesson.unguided))
+        .map(|lesson| {
+            (lesson.weight, tables[lesson.fold].pdf(lesson.position, lesson.direction) / lesson.unguided)
+        })
         .collect();
     let moment = |a: f32| -> f64 {
         let of = |(weight, ratio): &(f32, f32)| f64::from(weight * weight / (a + (1.0 - a) * ratio));
@@ -109,15 +134,44 @@ fn part_unguided(lessons: &[&Lesson], basis: Basis) -> f32 {
     best.map_or(1.0, |(a, _)| a)
 }
 
-fn table<'a>(lessons: impl Iterator<Item = &'a Lesson>, basis: Basis) -> Quadtree {
-    let deposit =
-        |lesson: &Lesson| Deposit { at: warp::from_sphere(lesson.direction), weight: lesson.weight };
-    Quadtree::by(basis, lessons.map(deposit).collect())
+impl Tabulator<'_> {
+    /// Of `lessons` of one cell; none where no links lead there.
+    fn table(self, lessons: &[&Lesson]) -> Option<Table> {
+        if self.basis == Basis::Links {
+            let lesson = lessons.get(lessons.len() / 2)?;
+            return Some(Table::Linked(self.links?.at(lesson.position, lesson.normal)?.clone()));
+        }
+        let deposit =
+            |lesson: &&Lesson| Deposit { at: warp::from_sphere(lesson.direction), weight: lesson.weight };
+        Some(Table::Learnt(Quadtree::by(self.basis, lessons.iter().map(deposit).collect())))
+    }
 }
 
-#[inline]
-fn pdf(table: &Quadtree, direction: Vec3) -> f32 {
-    table.density(warp::from_sphere(direction)) * warp::SPHERE_PDF
+impl Table {
+    /// Density of unit `direction` from `position` (1/sr).
+    #[inline]
+    fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
+        match self {
+            Self::Learnt(tree) => tree.density(warp::from_sphere(direction)) * warp::SPHERE_PDF,
+            Self::Linked(aims) => aims.pdf(position, direction),
+        }
+    }
+
+    /// A unit direction from `position`.
+    #[inline]
+    fn sample(&self, position: Vec3, stream: &mut Stream) -> Vec3 {
+        match self {
+            Self::Learnt(tree) => warp::to_sphere(tree.sample(stream.square())),
+            Self::Linked(aims) => aims.sample(position, stream),
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        match self {
+            Self::Learnt(tree) => tree.bytes(),
+            Self::Linked(aims) => aims.bytes(),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -146,7 +200,8 @@ mod tests {
             })
             .collect();
         let all: Vec<&Lesson> = lessons.iter().collect();
-        let known = Directions::learn(&all, &[portal], Basis::default()).unwrap();
+        let tabulator = Tabulator { basis: Basis::default(), links: None };
+        let known = Directions::learn(&all, &[portal], tabulator).unwrap();
         assert!(
             known.aimed.len() == 1 && known.aimed[0].0 > 0.3 && known.tabled.is_some(),
             "{:?}",

@@ -14,9 +14,13 @@
 
 mod crossings;
 mod directions;
+pub mod distribution;
+pub mod hierarchy;
+pub mod links;
 mod places;
 mod portal;
 mod radiance;
+pub mod solution;
 
 use crate::{
     bsdf::Transport,
@@ -24,11 +28,13 @@ use crate::{
     sampling::{Basis, Cells, Stream, cells::Keyed, quadtree::limit},
     scene::lights::{Lights, Starts},
 };
-use directions::{Directions, ENOUGH};
+use directions::{Directions, ENOUGH, Tabulator};
+use links::Links;
 use places::Places;
 pub use portal::Portal;
 pub use radiance::{Look, Radiance, Seen};
 use rayon::prelude::*;
+use solution::Ending;
 use std::sync::Arc;
 
 /// What was learnt of the paths that reach the image.
@@ -39,7 +45,7 @@ pub struct Learnt {
     /// Where walks go on to.
     pub guide: Option<Arc<Guide>>,
     /// What camera subpaths end in.
-    pub radiance: Option<Arc<Radiance>>,
+    pub ending: Option<Arc<Ending>>,
 }
 
 impl Learnt {
@@ -53,7 +59,7 @@ impl Learnt {
     pub fn bytes(&self) -> usize {
         let starts = self.starts.as_deref().map_or(0, Starts::bytes);
         let guide = self.guide.as_deref().map_or(0, Guide::bytes);
-        starts + guide + self.radiance.as_deref().map_or(0, Radiance::bytes)
+        starts + guide + self.ending.as_deref().map_or(0, Ending::bytes)
     }
 }
 
@@ -134,8 +140,9 @@ impl<const D: usize> Keyed<D> for Known<D> {
 }
 
 impl Guide {
-    /// What `lessons` tell, in some `basis`; none where that is nothing, or nothing better than what BSDFs and phase functions do.
-    pub fn learn(mut lessons: Vec<Lesson>, basis: Basis) -> Option<Self> {
+    /// What `lessons` tell, in some `basis`; none where that is nothing, or nothing better than what BSDFs and phase functions do. With
+    /// [`Basis::Links`] there are `links`.
+    pub fn learn(mut lessons: Vec<Lesson>, basis: Basis, links: Option<&Links>) -> Option<Self> {
         if limit(&mut lessons, MOST, |lesson| &mut lesson.weight) < ENOUGH {
             return None;
         }
@@ -158,7 +165,7 @@ impl Guide {
         guide.of_surfaces = leaves.len();
         guide.media = Cells::learn(of_media, PER_CELL, LEVELS, |known| add(&mut leaves, known));
         let portals = &guide.portals[..];
-        let learn = |leaf: Vec<u32>| Cell::learn(&lessons, &leaf, portals, basis);
+        let learn = |leaf: Vec<u32>| Cell::learn(&lessons, &leaf, portals, Tabulator { basis, links });
         guide.cells = leaves.into_par_iter().map(learn).collect();
         // What guides nothing need not be looked up.
         guide.cells.iter().any(Cell::guides).then_some(guide)
@@ -302,11 +309,11 @@ impl Cell {
         self.0.iter().any(Option::is_some)
     }
 
-    fn learn(lessons: &[Lesson], leaf: &[u32], portals: &[Portal], basis: Basis) -> Self {
+    fn learn(lessons: &[Lesson], leaf: &[u32], portals: &[Portal], tabulator: Tabulator<'_>) -> Self {
         let of = |transport| {
             let own = leaf.iter().map(|index| &lessons[*index as usize]);
             let own: Vec<_> = own.filter(|lesson| lesson.transport == transport).collect();
-            Directions::learn(&own, portals, basis)
+            Directions::learn(&own, portals, tabulator)
         };
         Self([Transport::Radiance, Transport::Importance].map(of))
     }

@@ -40,13 +40,7 @@ const LONGEST: u32 = 32;
 /// Segments to the last vertex of which a walk is sure to say what it scatters: beyond, not all of them go on to another place.
 const WHOLE: u32 = 24;
 
-/// How often light is scattered on its way from one place to another, at most, where images have paths of `max_depth`: of those, a
-/// segment leads to the camera's first vertex, one to the second and one from the emitter, at least.
-pub(super) fn most_bounces(max_depth: Option<u32>) -> u32 {
-    max_depth.map_or(DEEPEST, |depth| depth.min(DEEPEST)).saturating_sub(3)
-}
-
-/// What is seen of `scene` after so many bounces, by walks that follow what was `learnt`.
+/// What is seen of `scene` after so many bounces from one place to another (no more than `DEEPEST`), by walks that follow what was `learnt`.
 pub(super) fn learn(
     scene: &Scene,
     film: &Film,
@@ -64,7 +58,7 @@ pub(super) fn learn(
         subpaths += STEP;
         all.add(look(&*compiled, tasks));
     }
-    Radiance::learn(&all.looks, most_bounces)
+    Radiance::learn(&all.looks, most_bounces.min(DEEPEST))
 }
 
 /// What was seen, and what it took.
@@ -181,7 +175,7 @@ impl Observer for CameraPaths<'_> {
     }
 
     fn arrive(&mut self, event: Event<'_>) {
-        let (seen, is_dull) = (event.seen(self.scene), event.is_dull(self.scene));
+        let (seen, is_dull) = (event.place(self.scene).seen(), event.is_dull(self.scene));
         let Arrival { throughput, edges, .. } = event.arrival;
         self.walk.push(Reached { seen, throughput, edges, is_dull });
     }

@@ -13,16 +13,20 @@ use super::{radiance, trial::Trial};
 use crate::{
     bsdf::Transport,
     film::Film,
-    guide::{Guide, Learnt, Lesson},
+    first_pass,
+    guide::{
+        Guide, Learnt, Lesson,
+        solution::{Ending, Found, View},
+    },
     passes::{
         Settings,
         blocks::{PIXELS_PER_BLOCK, blocks_for},
         budget::Budget,
         compiled,
     },
-    sampling::Sampler,
+    sampling::{Basis, Sampler},
     scene::{Scene, lights::Starts},
-    settings::options::{Effort, Guiding},
+    settings::options::{Effort, FirstPass, Guiding},
     transport::{Algorithm, Connections, Heuristic, Options, Strategies, profiles::ProfileName},
 };
 use std::sync::Arc;
@@ -99,7 +103,7 @@ pub fn learn_until(
 
 /// What renders by `settings` learn by so many `rounds`.
 pub fn learn_rounds(scene: &Scene, film: &Film, settings: &Settings, rounds: usize) -> Learnt {
-    let Options { algorithm, effort, max_depth, .. } = settings.options;
+    let Options { algorithm, effort, max_depth, first_pass, flat, .. } = settings.options;
     let wanted = Wanted::by(settings.options, follows_guide(scene, film, settings));
     let after = |rounds| match wanted {
         Wanted { starts: None, guide: None, .. } => Learnt::default(),
@@ -111,15 +115,26 @@ pub fn learn_rounds(scene: &Scene, film: &Film, settings: &Settings, rounds: usi
     };
     let first = after(ROUNDS);
     let learnt = if rounds > ROUNDS { after(rounds) } else { first.clone() };
-    // Camera subpaths that end before they gather need nothing to end in.
-    if algorithm != Algorithm::Gather || max_depth.is_some_and(|depth| depth <= 2) {
+    if !algorithm.ends_in_first_pass() {
         return learnt;
     }
-    let most_bounces = radiance::most_bounces(max_depth);
-    let settings = of_learning(wanted.options);
-    let radiance = || Arc::new(radiance::learn(scene, film, &settings, &first, most_bounces));
-    let key = format!("{} {most_bounces}", wanted.key(film));
-    Learnt { radiance: Some(scene.lights.radiance.recall(key, radiance)), ..learnt }
+    let view = View { at_once: algorithm == Algorithm::FirstPass, flat };
+    // What is scattered where paths end was scattered so many times at most.
+    let most = max_depth.unwrap_or(u32::MAX).saturating_sub(if view.at_once { 1 } else { 2 });
+    if most == 0 {
+        return learnt;
+    }
+    let method = first_pass.by(algorithm);
+    let solve = || {
+        let settings = of_learning(wanted.options);
+        let found = match method {
+            FirstPass::Walks => Found::Walked(radiance::learn(scene, film, &settings, &first, most - 1)),
+            _ => Found::Solved(first_pass::solve(scene, method, most)),
+        };
+        Arc::new(Ending { found, view })
+    };
+    let key = format!("{} {method:?} {view:?} {most}", wanted.key(film));
+    Learnt { ending: Some(scene.lights.endings.recall(key, solve)), ..learnt }
 }
 
 /// True if walks by `settings` follow a guide.
@@ -332,7 +347,10 @@ impl<'a> Training<'a> {
             let lessons = trial.lessons(strategies, subpaths as f64);
             let left = |guide: &Arc<Guide>| trial.second_moment(strategies, guide);
             let second_moment = known.latest.guide.as_ref().map_or(1.0, left);
-            let guide = Guide::learn([&known.lessons[..], &lessons].concat(), wanted.options.basis);
+            let links = || Arc::new(first_pass::links(scene));
+            let basis = wanted.options.basis;
+            let links = (basis == Basis::Links).then(|| scene.lights.endings.recall("links".into(), links));
+            let guide = Guide::learn([&known.lessons[..], &lessons].concat(), basis, links.as_deref());
             let guide = guide.map(|guide| Arc::new(guide.judged(second_moment)));
             known.lessons = Arc::new(lessons);
             known.latest.guide.clone_from(&guide);

@@ -16,7 +16,7 @@ use crate::{
     scene::{Scene, lights::Starts},
     shape::Ray,
     transport::{
-        Algorithm, Heuristic, Interaction, Options,
+        Heuristic, Interaction, Options,
         observer::Observer,
         profiles::{
             Bounded, ByCompared, ByCutoff, ByKind, ChromaticBounded, ChromaticFog, Everything, Fire, Fog,
@@ -73,7 +73,7 @@ pub fn choose<'a>(
     let prepare = match (heuristic, settings.profile) {
         (Heuristic::Power | Heuristic::Maximum | Heuristic::Uniform, _) => Ready::<ByCompared>::prepare,
         (Heuristic::Cutoff { .. }, _) => Ready::<ByCutoff>::prepare,
-        (Heuristic::Balance, profile) if effort.is_guided() || algorithm == Algorithm::Gather => {
+        (Heuristic::Balance, profile) if effort.is_guided() || algorithm.ends_in_first_pass() => {
             match profile {
                 ProfileName::Vacuum => Ready::<Guided<Vacuum>>::prepare,
                 ProfileName::Fog => Ready::<Guided<Fog>>::prepare,

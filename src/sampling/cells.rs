@@ -81,6 +81,19 @@ impl<const D: usize, T> Cells<D, T> {
         size_of_val(&self.all[..])
     }
 
+    /// How many there are, those that are divided too.
+    pub fn count(&self) -> usize {
+        self.all.len()
+    }
+
+    /// What cell `index` holds, or else the two cells that it is divided into; the first holds all others.
+    pub fn cell(&self, index: usize) -> Result<&T, [u32; 2]> {
+        match &self.all[index] {
+            Cell::Split { beyond, .. } => Err([index as u32 + 1, *beyond]),
+            Cell::Leaf(leaf) => Ok(leaf),
+        }
+    }
+
     /// What holds `key`.
     #[inline]
     pub fn at(&self, key: [f32; D]) -> Option<&T> {

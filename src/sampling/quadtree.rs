@@ -70,12 +70,14 @@ pub enum Basis {
     Bins,
     /// Where Haar wavelets over equal areas have great coefficients (P03T sec. A.1), however few points say so.
     Haar,
+    /// Not by themselves, but by links of a first pass to where light comes from (P03T sec. 5.2.3).
+    Links,
 }
 
 impl Basis {
     /// Each as typed.
-    pub const NAMES: [(&'static str, Self); 3] =
-        [("quadtree", Self::Quadtree), ("bins", Self::Bins), ("haar", Self::Haar)];
+    pub const NAMES: [(&'static str, Self); 4] =
+        [("quadtree", Self::Quadtree), ("bins", Self::Bins), ("haar", Self::Haar), ("links", Self::Links)];
 
     /// As typed.
     pub fn name(self) -> &'static str {
@@ -142,7 +144,7 @@ impl Quadtree {
     /// The same in a `basis`.
     pub fn by(basis: Basis, deposits: Vec<Deposit>) -> Self {
         match basis {
-            Basis::Quadtree => Self::spread(&deposits, MIXED, |level, count, share| {
+            Basis::Quadtree | Basis::Links => Self::spread(&deposits, MIXED, |level, count, share| {
                 level == LEVELS || (level >= BINS && (count < TO_DIVIDE_BINS || share < LEAST_SHARE))
             }),
             Basis::Bins => Self::divided(deposits, |level, _, _| level == BINS, 0.0, 1),

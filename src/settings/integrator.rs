@@ -14,7 +14,10 @@ use crate::{
     settings::{
         Overrides,
         heuristic::HEURISTIC,
-        options::{Algorithm, CONNECTIONS, Connections, FORCED, GUIDE, MAX_DEPTH, MIN_DEPTH, Options, PATHS},
+        options::{
+            Algorithm, CONNECTIONS, Connections, FIRST_PASS, FORCED, FirstPass, GUIDE, MAX_DEPTH, MIN_DEPTH,
+            Options, PATHS,
+        },
     },
 };
 
@@ -107,6 +110,7 @@ pub const ROWS: Registry<Plugin<Build<Integrator>>> = Registry::new(
         ("direct", plugin(DIRECT, build_bdpt)),
         ("ptracer", plugin(PTRACER, |p| build_as(p, Algorithm::Lt))),
         ("gather", plugin(GATHER, build_gather)),
+        ("first_pass", plugin(FIRST_PASS_VIEW, build_first_pass)),
         ("fog", plugin(FOG, build_fog)),
         ("single_scattering", plugin(SINGLE_SCATTERING, build_single_scattering)),
         ("non_scattering", plugin(NON_SCATTERING, build_non_scattering)),
@@ -199,8 +203,14 @@ const PTRACER: Table = table! {
 };
 
 const GATHER: Table = table! {
-    "A biased preview: paths end at their second scattering; the rest is looked up in radiance learnt before (P03T sec. 5.3)."; ;
-    MAX_DEPTH, PATHS, COMMON
+    "A biased preview: paths end at their second scattering; the rest is looked up in a first pass (P03T sec. 5.3)."; ;
+    MAX_DEPTH, PATHS, FIRST_PASS, COMMON
+};
+
+const FIRST_PASS_VIEW: Table = table! {
+    "A biased preview: a first pass as it is, a coarse solution in elements of surfaces and media (P03T ch. 4).";
+    boolean("flat", false, "Every element has one colour; otherwise colours are interpolated.").ours();
+    MAX_DEPTH, PATHS, FIRST_PASS, COMMON
 };
 
 const FOG: Table = table! {
@@ -284,8 +294,20 @@ fn build_bdpt(params: &Params<'_>) -> Result<Integrator> {
 fn build_gather(params: &Params<'_>) -> Result<Integrator> {
     let hide_emitters = params.boolean("hide_emitters")?;
     let max_depth = u32::try_from(params.integer("max_depth")?).ok();
-    let options = Options { hide_emitters, max_depth, ..Options::of(Algorithm::Gather) };
+    let first_pass = match params.has("first_pass") {
+        true => params.choice("first_pass", &FirstPass::NAMES)?,
+        false => FirstPass::Usual,
+    };
+    let options = Options { hide_emitters, max_depth, first_pass, ..Options::of(Algorithm::Gather) };
     Ok(Integrator { options, ..Integrator::default() })
+}
+
+/// `first_pass`, the view of what `gather` ends in.
+fn build_first_pass(params: &Params<'_>) -> Result<Integrator> {
+    let flat = params.boolean("flat")?;
+    let integrator = build_gather(params)?;
+    let options = Options { algorithm: Algorithm::FirstPass, flat, ..integrator.options };
+    Ok(Integrator { options, ..integrator })
 }
 
 /// `fog` (BMA02 sec. 3.1 and 4.2).

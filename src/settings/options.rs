@@ -46,19 +46,22 @@ pub enum Algorithm {
     Pt,
     /// Light tracing.
     Lt,
-    /// A preview by path tracing: camera subpaths end where they scatter for the second time, in radiance learnt beforehand.
+    /// A preview by path tracing: camera subpaths end where they scatter for the second time, in the first pass.
     Gather,
+    /// A preview of the first pass itself: camera subpaths end where they scatter first.
+    FirstPass,
     /// A preview of first surfaces, which makes no paths.
     Fog,
 }
 
 impl Algorithm {
     /// As printed and as typed.
-    pub const NAMES: [(&'static str, Self); 5] = [
+    pub const NAMES: [(&'static str, Self); 6] = [
         ("bdpt", Self::Bdpt),
         ("pt", Self::Pt),
         ("lt", Self::Lt),
         ("gather", Self::Gather),
+        ("first-pass", Self::FirstPass),
         ("fog", Self::Fog),
     ];
 
@@ -75,7 +78,7 @@ impl Algorithm {
     pub fn strategies(self) -> Strategies {
         match self {
             Self::Bdpt => Strategies::BDPT,
-            Self::Pt | Self::Gather => Strategies::PT,
+            Self::Pt | Self::Gather | Self::FirstPass => Strategies::PT,
             Self::Lt => Strategies::LT,
             Self::Fog => Strategies::NONE,
         }
@@ -83,7 +86,12 @@ impl Algorithm {
 
     /// True if its image is not what it should be on average.
     pub fn is_preview(self) -> bool {
-        matches!(self, Self::Gather | Self::Fog)
+        matches!(self, Self::Gather | Self::FirstPass | Self::Fog)
+    }
+
+    /// True if camera subpaths end in the first pass.
+    pub fn ends_in_first_pass(self) -> bool {
+        matches!(self, Self::Gather | Self::FirstPass)
     }
 }
 
@@ -155,6 +163,40 @@ pub enum Sky {
 impl Sky {
     /// Each as typed.
     pub const NAMES: [(&'static str, Self); 2] = [("next-event", Self::NextEvent), ("hit", Self::Hit)];
+}
+
+/// How a first pass is solved (P03T ch. 4).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FirstPass {
+    /// By walks where paths end in it for the image's sake, by particles where it is the image: what is not said.
+    #[default]
+    Usual,
+    /// By walks from the camera, in cells where they came.
+    Walks,
+    /// Hierarchical Monte Carlo radiosity: by particles (P03T sec. 4.3).
+    Particles,
+    /// Radiance clustering: by links between elements and clusters (P03T sec. 4.2).
+    Links,
+}
+
+impl FirstPass {
+    /// Each as typed.
+    pub const NAMES: [(&'static str, Self); 3] =
+        [("walks", Self::Walks), ("particles", Self::Particles), ("links", Self::Links)];
+
+    /// The one that previews by `algorithm` use.
+    pub fn by(self, algorithm: Algorithm) -> Self {
+        match (self, algorithm) {
+            (Self::Usual, Algorithm::Gather) => Self::Walks,
+            (Self::Usual, _) => Self::Particles,
+            (said, _) => said,
+        }
+    }
+
+    /// As typed.
+    pub fn name(self) -> &'static str {
+        Self::NAMES.iter().find(|(_, method)| *method == self).map_or("usual", |(name, _)| name)
+    }
 }
 
 /// When walks follow a guide.
@@ -229,6 +271,10 @@ pub struct Options {
     pub effort: Effort,
     /// How a guide keeps directions.
     pub basis: Basis,
+    /// How a first pass is solved.
+    pub first_pass: FirstPass,
+    /// Each of its elements is shown as it is, not interpolated.
+    pub flat: bool,
     /// With [`Connections::All`] there is one light subpath a pixel sample, whatever `effort` says.
     pub connections: Connections,
     /// By which they share the paths that several of them can make. All but [`Heuristic::Balance`] run on the profile
@@ -284,6 +330,8 @@ impl Default for Options {
             strategies: Strategies::BDPT,
             effort: Effort { guide: Guiding::default(), ..Effort::default() },
             basis: Basis::default(),
+            first_pass: FirstPass::default(),
+            flat: false,
             connections: Connections::default(),
             heuristic: Heuristic::default(),
             max_depth: None,
@@ -305,8 +353,15 @@ pub(super) const GUIDE: &[Parameter] = rows! {
     choice("guide", &words::<3, _>(&Guiding::NAMES), "never",
         "Path guiding: sample directions learnt from earlier paths.")
         .said("auto for bdpt, else never").ours(),
-    choice("guide_basis", &words::<3, _>(&Basis::NAMES), "quadtree",
-        "Directions in the guide: an adaptive `quadtree`, equal `bins` or `haar` wavelets (P03T sec. 5.2.1, A.1).").ours(),
+    choice("guide_basis", &words::<4, _>(&Basis::NAMES), "quadtree",
+        "Directions in the guide: an adaptive `quadtree`, equal `bins`, `haar` wavelets (P03T sec. 5.2.1, A.1), or `links` of a first pass (sec. 5.2.3).").ours(),
+};
+
+/// What those have that end in a first pass.
+pub(super) const FIRST_PASS: &[Parameter] = rows! {
+    choice("first_pass", &words::<3, _>(&FirstPass::NAMES), "particles",
+        "How the first pass is solved: by `walks` from the camera, by `particles` or by `links` between clusters (P03T sec. 4.3, 4.2).")
+        .said("walks for gather, particles for first_pass").ours(),
 };
 
 /// The limit of paths.
@@ -353,6 +408,8 @@ impl Options {
                 ..Effort::default()
             },
             basis: if samples { params.choice("guide_basis", &Basis::NAMES)? } else { Basis::default() },
+            first_pass: FirstPass::default(),
+            flat: false,
             connections: Connections::default(),
             // Limits that u32 does not hold are none.
             max_depth: u32::try_from(params.integer("max_depth")?).ok(),

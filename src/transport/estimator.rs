@@ -9,7 +9,7 @@ use super::{
     strategy::StrategyKind,
 };
 use crate::{
-    guide::{Guide, Radiance},
+    guide::{Guide, solution::Ending},
     math::Vec3,
     scene::{
         Scene,
@@ -62,7 +62,7 @@ pub struct Estimator<'a, P: Profile> {
     /// What walks follow.
     pub(super) guide: Option<Arc<Guide>>,
     /// What camera subpaths end in.
-    pub(super) radiance: Option<Arc<Radiance>>,
+    pub(super) ending: Option<Arc<Ending>>,
     pub(super) profile: std::marker::PhantomData<P>,
 }
 

@@ -3,7 +3,7 @@
 use super::{interaction::Interaction, profiles::Everything};
 use crate::{
     bsdf::Transport,
-    guide::Seen,
+    guide::solution::Place,
     math::{Spectrum, Vec3},
     medium::MediumIndex,
     phase::PhaseModel,
@@ -87,16 +87,14 @@ impl Event<'_> {
         self.is_connectible(scene) && pdf(mirrored) < most && pdf(-incoming) < most
     }
 
-    /// What the vertex before sees of it, nothing yet.
+    /// Where it is looked up.
     #[inline]
-    pub fn seen(&self, scene: &Scene) -> Seen {
-        let (position, incoming) = (self.position(), self.arrival.incoming);
-        match self.interaction {
-            Interaction::Surface(point) => Seen::surface(position, point.normal, incoming),
-            Interaction::Medium(_, properties) => {
-                let phase = &scene.media[properties.medium.0 as usize].phase;
-                Seen::medium(position, phase.mean_cosine(), incoming)
-            }
-        }
+    pub fn place(&self, scene: &Scene) -> Place {
+        let mean_cosine = match self.interaction {
+            Interaction::Surface(_) => 0.0,
+            Interaction::Medium(_, found) => scene.media[found.medium.0 as usize].phase.mean_cosine(),
+        };
+        let (normal, towards) = (self.interaction.normal(), self.arrival.incoming);
+        Place { position: self.position(), normal, towards, mean_cosine }
     }
 }

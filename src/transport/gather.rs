@@ -1,7 +1,6 @@
-//! The preview `gather` (P03T sec. 5.3): camera subpaths as of path tracing, which end where they scatter for the second time, in
-//! the radiance that was learnt of that place. Mirrors and glass scatter in one direction alone, and do not count; at glossy
-//! surfaces they go on. What is lit directly, and what the first vertex sees, is as it should be; all that lies behind is blurred
-//! over cells.
+//! Previews by a first pass: camera subpaths as of path tracing, which end where they scatter for the second time (`gather`, P03T
+//! sec. 5.3) or first (`first-pass`, sec. 4.3.3), in what the first pass has of that place. Mirrors and glass scatter in one direction
+//! alone, and do not count; at glossy surfaces they go on, and so does what a mirror reflects where a surface is dull too.
 
 use super::{
     cache::Partners,
@@ -16,7 +15,7 @@ use super::{
     walk::{Departure, Kind, Visitor, go_on},
 };
 use crate::{
-    guide::Radiance,
+    guide::solution::Ending,
     math::{Vec2, Vec3},
     sampling::Stream,
 };
@@ -24,7 +23,7 @@ use crate::{
 /// One camera subpath; the rest as in [`super::camera_path::sample`].
 pub(super) fn sample<P: Profile, R: Observer>(
     estimator: &Estimator<'_, P>,
-    radiance: &Radiance,
+    ending: &Ending,
     [film, aperture]: [Vec2; 2],
     hero: usize,
     observer: R,
@@ -33,9 +32,10 @@ pub(super) fn sample<P: Profile, R: Observer>(
     let (scene, max_edges) = (estimator.scene, estimator.max_edges);
     let kind = Kind::of_camera(estimator, hero);
     let path = CameraPath::new(estimator, Partners::NONE, hero, observer);
-    let mut gather = Gather { path, radiance, has_scattered: false, is_done: false };
+    let mut gather = Gather { path, ending, has_scattered: ending.view.at_once, is_done: false };
     let mut next = Some(depart(estimator, film, aperture)).filter(|_| max_edges > 0);
-    while let Some(departure) = next.filter(|_| !gather.is_done) {
+    while let Some(departure) = next.filter(|departure| departure.dirac || !gather.is_done) {
+        gather.is_done = false;
         gather.depart(&departure);
         let mut along =
             |passed: &Passed<P::Channels>, stream: &mut Stream| gather.pass(&departure, passed, stream);
@@ -48,7 +48,7 @@ pub(super) fn sample<P: Profile, R: Observer>(
 /// A camera subpath on its way to the place where it ends.
 struct Gather<'a, P: Profile, R> {
     path: CameraPath<'a, P, R>,
-    radiance: &'a Radiance,
+    ending: &'a Ending,
     has_scattered: bool,
     is_done: bool,
 }
@@ -83,7 +83,7 @@ impl<P: Profile, R: Observer> Visitor<P> for Gather<'_, P, R> {
         }
         if vertex.subpath.edges < max_edges {
             let Subpath { throughput, pdf_over_hero, .. } = vertex.subpath;
-            let radiance = self.radiance.at(&vertex.event().seen(scene));
+            let radiance = self.ending.at(&vertex.event().place(scene), stream);
             self.path.observer.gather(throughput * radiance * mis::weight_alone(pdf_over_hero));
         }
         self.is_done = true;

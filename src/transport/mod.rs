@@ -98,11 +98,14 @@ pub use mis::MisSums;
 pub use observer::Contribution;
 pub use profile::Profile;
 pub use segment::{NullCrossing, Segment};
+pub(crate) use segment::{sample_free_flight, transmittance};
 pub use vertex::Vertex;
 
 pub use crate::{
     settings::heuristic::Heuristic,
-    settings::options::{Algorithm, Connections, Effort, Guiding, Options, Sky, Strategies, Survival},
+    settings::options::{
+        Algorithm, Connections, Effort, FirstPass, Guiding, Options, Sky, Strategies, Survival,
+    },
 };
 
 use crate::{
@@ -164,7 +167,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             manifold: if strategies.connection && lit { Manifold::of(scene) } else { None },
             sky: effort.sky,
             guide: learnt.guide.filter(|_| P::GUIDED),
-            radiance: learnt.radiance.filter(|_| P::GUIDED),
+            ending: learnt.ending.filter(|_| P::GUIDED),
             profile: std::marker::PhantomData,
         };
         match connections {
@@ -174,7 +177,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             Connections::All => (estimator.keep, estimator.counts.connection) = (1.0, 1.0),
         }
         // Pilots record the probability at every vertex, of the walks that may follow a guide.
-        let is_recorded = P::GUIDED && options.algorithm != Algorithm::Gather;
+        let is_recorded = P::GUIDED && !options.algorithm.ends_in_first_pass();
         if lit && !is_recorded && !estimator.needs_light_walks() {
             estimator.roulette = Roulette::alone(&mut estimator);
         }
@@ -217,8 +220,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
     /// What remains of radiance along a primary ray (its `t_max` is its length); 0 where something blocks it.
     pub fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum {
         let medium = self.scene.media_map.sensor;
-        let passed =
-            segment::transmittance::<P>(self.scene, primary, 0.0, medium, self.hide_emitters, stream);
+        let passed = transmittance::<P>(self.scene, primary, 0.0, medium, self.hide_emitters, stream);
         passed.map_or(Spectrum::ZERO, |passed| passed.transmittance)
     }
 
@@ -228,7 +230,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
     pub fn first_interaction(&self, primary: Ray, stream: &mut Stream) -> Option<Interaction> {
         let medium = self.scene.media_map.sensor;
         let ahead = Segment::along(self.scene, primary, medium, self.hide_emitters);
-        segment::sample_free_flight::<P>(ahead, 0, stream, &mut |_, _| ()).interaction
+        sample_free_flight::<P>(ahead, 0, stream, &mut |_, _| ()).interaction
     }
 
     /// One camera subpath of channel `hero` through `film` (pixels) and a point of the aperture; what it
@@ -242,9 +244,9 @@ impl<'a, P: Profile> Estimator<'a, P> {
         stream: &mut Stream,
     ) -> R {
         if P::GUIDED
-            && let Some(radiance) = &self.radiance
+            && let Some(ending) = &self.ending
         {
-            return gather::sample(self, radiance, [film, aperture], hero, observer, stream);
+            return gather::sample(self, ending, [film, aperture], hero, observer, stream);
         }
         let light = self.partners(cache, hero, walk);
         if P::MEDIA && self.forced_interaction {

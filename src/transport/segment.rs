@@ -7,10 +7,10 @@ mod free_flight;
 mod transmittance;
 
 pub(super) use forced::{ForcedEnd, force, sure_depth};
-pub(super) use free_flight::{
-    EmitterCrossing, FlightPart, FlightState, FreeFlight, Passed, sample_free_flight,
-};
-pub(super) use transmittance::{SegmentTransmittance, transmittance};
+pub(crate) use free_flight::sample_free_flight;
+pub(super) use free_flight::{EmitterCrossing, FlightPart, FlightState, FreeFlight, Passed};
+pub(super) use transmittance::SegmentTransmittance;
+pub(crate) use transmittance::transmittance;
 
 use crate::{
     math::{RaySegment, Spectrum, Vec3, measure, offset},

@@ -1,10 +1,10 @@
-//! The preview `gather`: blurred, but of the right energy.
+//! The previews `gather` and `first-pass`: blurred, but of the right energy.
 
 use crate::common::{Stage, pieces::*};
 use serde_json::{Value, json};
 use tyndall::{
     math::SpectrumExt,
-    transport::{Algorithm, Guiding},
+    transport::{Algorithm, FirstPass, Guiding, Options},
 };
 
 /// A hollow ball around the camera whose wall reflects a half and shines, and a thing in it.
@@ -24,6 +24,24 @@ fn furnace(fog: Option<Value>, thing: Option<Value>) -> Stage {
     };
     parts.extend(thing.map(|thing| ("thing", thing)));
     Stage::new(&scene(&parts))
+}
+
+/// The mean radiance of the previews of first passes that are solved in elements.
+fn in_elements(stage: &mut Stage) -> Vec<(String, f64)> {
+    let mut found = Vec::new();
+    for first_pass in [FirstPass::Particles, FirstPass::Links] {
+        for algorithm in [Algorithm::Gather, Algorithm::FirstPass] {
+            let options = &mut stage.setup.integrator.options;
+            *options = Options { first_pass, algorithm, ..*options };
+            options.effort.guide = Guiding::Never;
+            let image = stage.render(algorithm.strategies(), 64, 0);
+            let mean =
+                image.iter().map(|pixel| f64::from(pixel.luminance())).sum::<f64>() / image.len() as f64;
+            found.push((format!("{} by {}", algorithm.name(), first_pass.name()), mean));
+        }
+    }
+    stage.setup.integrator.options.first_pass = FirstPass::Usual;
+    found
 }
 
 /// The mean radiance of some images, one half with a guide and one half without.
@@ -55,6 +73,11 @@ fn furnaces_are_in_balance() {
         ("coloured fog", furnace(Some(medium(rgb(0.3, 0.6, 1.2), 1.0, 0.0)), None)),
     ] {
         assert_close(name, mean(&mut stage, Algorithm::Gather), 3.0, 0.01);
+        for (preview, found) in in_elements(&mut stage) {
+            // Links see no mirrors: what is behind them is dark.
+            let is_blind = preview.contains("links") && ["mirror", "glass"].contains(&name);
+            assert_close(&format!("{name}, {preview}"), found, 3.0, if is_blind { 0.2 } else { 0.02 });
+        }
     }
 }
 
@@ -67,6 +90,9 @@ fn depth_counts_what_was_learnt() {
         expected += 1.5 * 0.5f64.powi(depth - 1);
         stage.setup.integrator.options.max_depth = Some(depth as u32);
         assert_close(&format!("depth {depth}"), mean(&mut stage, Algorithm::Gather), expected, 0.01);
+        for (preview, found) in in_elements(&mut stage) {
+            assert_close(&format!("depth {depth}, {preview}"), found, expected, 0.02);
+        }
     }
 }
 

@@ -76,16 +76,13 @@ impl Head {
         let clock = CpuClock::start(0.0);
         let (found, plan) = pilot()?;
         let cpu_seconds = clock.seconds().unwrap_or(0.0);
-        Ok((
-            found,
-            Self { cpu_seconds, learnt: lights.learnt.kept(), radiance: lights.radiance.kept(), plan },
-        ))
+        Ok((found, Self { cpu_seconds, learnt: lights.learnt.kept(), radiance: lights.endings.kept(), plan }))
     }
 
     /// Leaves with `scene` what was learnt by then, and nothing else: the next render is as the first.
     pub fn put_back(&self, scene: &Scene) {
         scene.lights.learnt.put_back(&self.learnt);
-        scene.lights.radiance.put_back(&self.radiance);
+        scene.lights.endings.put_back(&self.radiance);
     }
 }
 

@@ -18,7 +18,7 @@ class RenderOptions(TypedDict, total=False):
     confidence: Number | None
     seed: int | None
     threads: int | None
-    integrator: Literal["bdpt", "pt", "lt", "fog", "gather", "path", "volpath", "volpathmis", "ptracer"] | None
+    integrator: Literal["bdpt", "pt", "lt", "fog", "gather", "first-pass", "path", "volpath", "volpathmis", "ptracer"] | None
     strategies: str | Sequence[str] | None
     max_depth: int | None
     min_depth: int | None
@@ -28,7 +28,9 @@ class RenderOptions(TypedDict, total=False):
     connections: Literal["cached", "all"] | None
     starts: Literal["emitted", "learnt"] | None
     sky: Literal["next-event", "hit"] | None
-    basis: Literal["quadtree", "bins", "haar"] | None
+    basis: Literal["quadtree", "bins", "haar", "links"] | None
+    first_pass: Literal["walks", "particles", "links"] | None
+    flat: bool | None
     profile: str | None
     tracker: Literal["auto", "closed_form", "exact", "march", "null_collision", "residual_ratio"] | None
     step: Number | None

@@ -155,7 +155,7 @@ def load(scene: AnyScene, parameters: Mapping[str, object] | None = None) -> dic
         return changed(tree, lambda o: absolute(o, target.parent))
 
 
-INTEGRATORS = "bdpt", "pt", "lt", "path", "volpath", "volpathmis", "ptracer", "gather", "fog", "single_scattering", "non_scattering", "aov", "moment", "direct", "depth"
+INTEGRATORS = "bdpt", "pt", "lt", "path", "volpath", "volpathmis", "ptracer", "gather", "first_pass", "fog", "single_scattering", "non_scattering", "aov", "moment", "direct", "depth"
 """Those of both renderers, as far as scenes may have them."""
 
 

@@ -67,8 +67,8 @@ pub struct Lights {
     from_infinity: Spectrum,
     /// What was learnt of paths that reach an image.
     pub learnt: Memo,
-    /// What was learnt of the radiance of places.
-    pub radiance: Memo,
+    /// What camera subpaths end in, and the links that guide some.
+    pub endings: Memo,
 }
 
 impl Lights {
@@ -107,7 +107,7 @@ impl Lights {
             radius,
             from_infinity,
             learnt: Memo::default(),
-            radiance: Memo::default(),
+            endings: Memo::default(),
         }
     }
 

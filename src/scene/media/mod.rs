@@ -139,6 +139,18 @@ impl Scene {
         self.medium_towards(point, -direction, direction, medium)
     }
 
+    /// The medium at `position`, which lies on no surface; a region where several overlap. None where the scene does not say.
+    pub fn medium_at(&self, position: Vec3) -> Option<MediumIndex> {
+        let found = self.locator().along(position, Vec3::X)?;
+        let overlaps = self.media_map.overlaps.as_ref();
+        Some(overlaps.map_or(found, |overlaps| overlaps.at(found, position, Vec3::X)))
+    }
+
+    /// The medium of a ray that leaves `origin`, which lies on no surface, in unit `direction`.
+    pub fn medium_along(&self, origin: Vec3, direction: Vec3) -> MediumIndex {
+        self.locator().along(origin, direction).unwrap_or(MediumIndex::VACUUM)
+    }
+
     pub(super) fn locator(&self) -> Locator<'_> {
         Locator { geometry: &self.geometry, surfaces: &self.surfaces, known: &self.media_map.known }
     }

@@ -41,7 +41,7 @@ pub(super) fn arbitrary() -> Arc<Guide> {
             fold: index / 7 % 2,
         }
     });
-    let guide = Guide::learn(lessons.collect(), Basis::default()).unwrap();
+    let guide = Guide::learn(lessons.collect(), Basis::default(), None).unwrap();
     assert!(!guide.portals().is_empty());
     Arc::new(guide)
 }

@@ -42,6 +42,8 @@ const ALL: Options = Options {
     strategies: Strategies::BDPT,
     effort: Effort::EQUAL,
     basis: crate::sampling::Basis::Quadtree,
+    first_pass: crate::settings::options::FirstPass::Usual,
+    flat: false,
     connections: Connections::Cached,
     heuristic: Heuristic::Balance,
     max_depth: None,

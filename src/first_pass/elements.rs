@@ -1,0 +1,396 @@
+//! The elements of a scene: points of its surfaces and media, and how each element reflects, scatters and emits.
+
+use super::point::Point;
+use crate::{
+    bsdf::{BsdfModel as _, Transport},
+    emitter::{Kind, SurfaceModel as _},
+    guide::{
+        distribution::{Bins, Distribution},
+        hierarchy::{Hierarchy, Sample},
+        links::Aim,
+    },
+    math::{Bounds, Frame, Spectrum, SpectrumExt, Vec3, vec3, warp},
+    medium::MediumIndex,
+    phase::PhaseModel as _,
+    sampling::{Stream, stream::Purpose},
+    scene::{Scene, lights::Light},
+    shape::SurfacePoint,
+    transport::{Arrival, Event, Interaction, profiles::Everything},
+};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Of the random numbers that choose points.
+const SEED: u64 = 0x656c_656d_656e_7473;
+/// Points of an element: it has half of them at least, and about as many on average.
+const PER_ELEMENT: usize = 32;
+/// Points in a medium's box for each that stands for a part of it: of those, more are taken where the medium is dense.
+const CANDIDATES: usize = 2;
+/// Bins along each edge of the square of all directions, where elements look different from everywhere.
+const BINS: u32 = 8;
+/// Extinction of what emits without (1/m).
+const LEAST_EXTINCTION: f32 = 1e-6;
+/// Length of the mean normal from which on an element faces one way.
+const FLAT: f32 = 0.98;
+/// The least part of a box's longest edge that half of any other has.
+const THICKNESS: f32 = 0.01;
+/// How much larger boxes are than those around points.
+const WIDENED: f32 = 1.2;
+/// The least |cos| at which light comes to an element.
+const GRAZING: f32 = 0.1;
+/// Points of an element by which it scatters.
+const LOOKED_AT: usize = 4;
+
+/// All of them, and the points that stand for them.
+pub(super) struct Elements {
+    pub hierarchy: Hierarchy,
+    /// In the order of the hierarchy.
+    pub points: Vec<Point>,
+    /// How much of surfaces or media those up to each stand for (m^2).
+    sums: Vec<f64>,
+    pub all: Vec<Element>,
+    /// How the light that each node sends is kept.
+    pub bins: Vec<Bins>,
+}
+
+/// How an element of surfaces or of a medium scatters.
+pub(super) struct Element {
+    /// What it emits: radiance of a surface, and of a medium what is emitted for each collision (W/(m^2 sr)).
+    pub source: Distribution,
+    /// See [`Distribution::scattered`].
+    scattering: Arc<[Spectrum]>,
+    /// What that is multiplied with.
+    tint: Spectrum,
+    /// Unit, on average; none in a medium.
+    normal: Option<Vec3>,
+}
+
+impl Element {
+    /// |cos| of unit `towards` to a surface; 1 in a medium. Bins are too wide for grazing angles.
+    pub(super) fn cosine(&self, towards: Vec3) -> f32 {
+        self.normal.map_or(1.0, |normal| normal.dot(towards).abs().max(GRAZING))
+    }
+
+    /// What it scatters of what comes.
+    pub(super) fn scatter(&self, incoming: &Distribution) -> Distribution {
+        incoming.scattered(&self.scattering, self.tint)
+    }
+}
+
+impl Elements {
+    /// About `number` of surfaces, and as many of media.
+    pub(super) fn of(scene: &Scene, number: usize) -> Self {
+        let mut known = on_surfaces(scene, number * PER_ELEMENT);
+        known.extend(in_media(scene, number * PER_ELEMENT));
+        let samples: Vec<Sample> = known.iter().map(|(_, sample)| *sample).collect();
+        let (hierarchy, order) = Hierarchy::of(&samples, PER_ELEMENT as f64);
+        let points: Vec<Point> = order.iter().map(|index| known[*index as usize].0).collect();
+        let phases = phases(scene);
+        let element = |node: &u32| {
+            let own = hierarchy.nodes[*node as usize].points.clone();
+            element(scene, &points[own.start as usize..own.end as usize], &phases)
+        };
+        let all: Vec<Element> = hierarchy.elements.par_iter().map(element).collect();
+        let bins = bins(&hierarchy, &all);
+        let measures = order.iter().map(|index| samples[*index as usize].measure.luminance());
+        let sums = measures.scan(0.0, |sum, measure| {
+            *sum += f64::from(measure);
+            Some(*sum)
+        });
+        let sums = sums.collect();
+        Self { hierarchy, points, sums, all, bins }
+    }
+
+    /// One of the points of a node, for `u` in [0, 1): each as often as it stands for much.
+    pub(super) fn pick(&self, node: u32, u: f64) -> &Point {
+        let own = &self.hierarchy.nodes[node as usize].points;
+        let (first, last) = (own.start as usize, own.end as usize - 1);
+        let before = if first == 0 { 0.0 } else { self.sums[first - 1] };
+        let at = before + u * (self.sums[last] - before);
+        let within = self.sums[first..last].partition_point(|sum| *sum <= at);
+        &self.points[first + within]
+    }
+
+    /// The box around a node, along its surface where it faces one way.
+    pub(super) fn aim(&self, node: u32) -> Aim {
+        let points = self.points(node);
+        let facing: Vec3 =
+            points.iter().filter_map(|point| point.interaction.normal()).sum::<Vec3>() / points.len() as f32;
+        let frame = Frame::around(if facing.length() > FLAT { facing.normalize() } else { Vec3::Z });
+        let local = points.iter().map(|point| Bounds::of(frame.to_local(point.interaction.position())));
+        let around = local.fold(Bounds::EMPTY, Bounds::union);
+        let size = around.size();
+        // Points lie within what they stand for.
+        let half = (0.5 * size).max(Vec3::splat(THICKNESS * size.max_element())) * WIDENED;
+        let centre = frame.to_world(0.5 * (around.low + around.high));
+        Aim { centre, frame, half: half.max(Vec3::splat(f32::MIN_POSITIVE)), probability: 1.0 }
+    }
+
+    /// The points that stand for a node.
+    pub(super) fn points(&self, node: u32) -> &[Point] {
+        let own = &self.hierarchy.nodes[node as usize].points;
+        &self.points[own.start as usize..own.end as usize]
+    }
+}
+
+/// Those of all nodes: a cluster is as its parts if they are alike, and surfaces that face one way are like one.
+fn bins(hierarchy: &Hierarchy, all: &[Element]) -> Vec<Bins> {
+    let mut found = vec![Bins::Equal(BINS); hierarchy.nodes.len()];
+    for (index, node) in hierarchy.nodes.iter().enumerate().rev() {
+        let Some(parts) = node.parts else {
+            found[index] = all[node.elements.start as usize].source.bins;
+            continue;
+        };
+        found[index] = match parts.map(|part| found[part as usize]) {
+            [Bins::Sides(a), Bins::Sides(b)] => {
+                let [whole, other] = parts.map(|part| hierarchy.nodes[part as usize].measure.x);
+                let mean = (a * whole + b * other) / (whole + other);
+                if mean.length() > FLAT { Bins::Sides(mean.normalize()) } else { Bins::Equal(BINS) }
+            }
+            [Bins::Equal(1), Bins::Equal(1)] => Bins::Equal(1),
+            _ => Bins::Equal(BINS),
+        };
+    }
+    found
+}
+
+/// About `number` points of all surfaces that reflect or emit: half of them by area, half as many of each shape.
+fn on_surfaces(scene: &Scene, number: usize) -> Vec<(Point, Sample)> {
+    let is_seen = |shape: &u32| {
+        let surface = scene.surface(*shape);
+        (surface.connectible || surface.emitter.is_some()) && scene.geometry.area(*shape) > 0.0
+    };
+    let shapes: Vec<u32> = (0..scene.surfaces.len() as u32).filter(is_seen).collect();
+    let all: f32 = shapes.iter().map(|shape| scene.geometry.area(*shape)).sum();
+    let of_shape = |shape: &u32| {
+        let area = scene.geometry.area(*shape);
+        let share = 0.5 / shapes.len() as f32 + 0.5 * area / all;
+        let count = ((number as f32 * share) as u64).max(PER_ELEMENT as u64);
+        let shape = *shape;
+        (0..count).into_par_iter().map(move |index| {
+            let mut stream = Stream::sobol(SEED, u64::from(shape), index, Purpose::Study);
+            on_surface(scene, scene.geometry.sample_area(shape, &mut stream), area / count as f32)
+        })
+    };
+    shapes.par_iter().flat_map(of_shape).collect()
+}
+
+fn on_surface(scene: &Scene, point: SurfacePoint, area: f32) -> (Point, Sample) {
+    let of_side = |side: f32| {
+        let wi = point.shading.to_local(side * point.normal);
+        let albedo = scene.at(&point, |bsdf, uv| bsdf.albedo(uv, wi));
+        (albedo + emitted(scene, &point, side * point.normal)).luminance()
+    };
+    let sides = [1.0, -1.0].map(of_side);
+    let sample = Sample {
+        position: point.position,
+        normal: Some(point.normal),
+        measure: Spectrum::splat(area),
+        value: kind(sides[0] + sides[1]),
+    };
+    (Point::on(scene, point, sides.map(|side| side > 0.0)), sample)
+}
+
+/// What elements should not mix, in steps of a fifth: what differs by rounding alone is the same.
+pub(super) fn kind(amount: f32) -> f32 {
+    (4.0 * amount.max(f32::MIN_POSITIVE).log2()).round()
+}
+
+/// Radiance that leaves a point of a shape in unit `direction` (W/(m^2 sr)).
+fn emitted(scene: &Scene, point: &SurfacePoint, direction: Vec3) -> Spectrum {
+    let Some(light) = scene.surface(point.shape).emitter else { return Spectrum::ZERO };
+    let Kind::Surface(surface) = &scene.lights.all[light as usize].emitter.kind else {
+        return Spectrum::ZERO;
+    };
+    surface.radiance(point.uv, point.front().dot(direction))
+}
+
+/// Points of all media, about `number` together.
+fn in_media(scene: &Scene, number: usize) -> Vec<(Point, Sample)> {
+    let count = scene.media_map.overlaps.as_ref().map_or(scene.media.len(), |overlaps| overlaps.media());
+    let media: Vec<(MediumIndex, Bounds)> = (1..count as u32)
+        .map(MediumIndex)
+        .filter_map(|medium| Some((medium, extent(scene, medium)?)))
+        .collect();
+    let number = number / media.len().max(1);
+    media.into_iter().flat_map(|(medium, within)| in_medium(scene, medium, within, number)).collect()
+}
+
+/// The box that `medium` is in; none where that is nothing, or has no end.
+fn extent(scene: &Scene, medium: MediumIndex) -> Option<Bounds> {
+    let of = |side: fn(&crate::scene::media::Boundary) -> Option<MediumIndex>| {
+        let surfaces = scene.surfaces.iter().zip(scene.geometry.shapes());
+        surfaces.filter(move |(surface, _)| side(&surface.boundary) == Some(medium))
+    };
+    let inside = of(|boundary| boundary.interior).map(|(_, shape)| shape.bounds()).reduce(Bounds::union);
+    let is_around = of(|boundary| boundary.exterior).next().is_some() || inside.is_none();
+    let shapes = if is_around { around(scene) } else { inside? };
+    let bounds = match scene.media[medium.0 as usize].extent() {
+        Some(own) if shapes.is_finite() => own.common(shapes)?,
+        Some(own) => own,
+        None => shapes,
+    };
+    (bounds.is_finite() && bounds.size().min_element() > 0.0).then_some(bounds)
+}
+
+/// The box around all shapes, the camera and lamps.
+fn around(scene: &Scene) -> Bounds {
+    let is_lamp = |light: &&Light| matches!(light.emitter.kind, Kind::Point(_) | Kind::Beam(_));
+    let lamps = scene.lights.all.iter().filter(is_lamp).map(|light| light.position);
+    let points = lamps.chain([scene.sensor.position()]).map(Bounds::of);
+    points.fold(scene.geometry.bounds(), Bounds::union)
+}
+
+/// Of even points in a box, those that lie in `medium`: `number` of them, the more the denser it is.
+fn in_medium(scene: &Scene, medium: MediumIndex, within: Bounds, number: usize) -> Vec<(Point, Sample)> {
+    let candidates = CANDIDATES * number;
+    let emission = scene.lights.of_medium(medium).map(|(_, emission)| emission);
+    let find = |index: u64| {
+        let mut stream = Stream::sobol(SEED, u64::from(medium.0), index, Purpose::Pilot);
+        let at = vec3(stream.uniform(), stream.uniform(), stream.uniform());
+        let position = within.low + within.size() * at;
+        let there = scene.medium_at(position)?;
+        let mut found = scene.media[medium.0 as usize].properties_at::<Everything>(0, position);
+        let emits = emission.is_some_and(|emission| emission.at(position).max_element() > 0.0);
+        if emits {
+            found.sigma_t = found.sigma_t.max(Spectrum::splat(LEAST_EXTINCTION));
+        }
+        let holds = scene.components(&there).contains(&medium) && found.sigma_t.max_element() > 0.0;
+        holds.then_some((Point::within(position, found, there), found.sigma_t))
+    };
+    let found: Vec<(Point, Spectrum)> = (0..candidates as u64).into_par_iter().filter_map(find).collect();
+    let mean = found.iter().map(|(_, sigma_t)| sigma_t.luminance()).sum::<f32>() / found.len().max(1) as f32;
+    let volume = within.size().element_product() / candidates as f32;
+    let (mut due, each) = (0.5, number as f32 / found.len().max(1) as f32);
+    let mut kept = Vec::new();
+    for (point, sigma_t) in found {
+        // As many as if each had the mean density, and as many by its own.
+        let chance = (0.5 * each * (1.0 + sigma_t.luminance() / mean)).min(1.0);
+        due += chance;
+        if due >= 1.0 {
+            due -= 1.0;
+            kept.push((point, point.sample(sigma_t * (volume / chance), kind(sigma_t.max_element()))));
+        }
+    }
+    kept
+}
+
+/// How each medium scatters light between bins, with albedo 1.
+fn phases(scene: &Scene) -> Vec<(Bins, Arc<[Spectrum]>)> {
+    scene
+        .media
+        .par_iter()
+        .map(|medium| {
+            let looks = [Vec3::Z, Vec3::X, -Vec3::Z];
+            let pdf = |after: Vec3| medium.phase.pdf_sr(crate::phase::Deflection::between(Vec3::Z, after));
+            let is_even = looks.into_iter().all(|after| (pdf(after) / warp::SPHERE_PDF - 1.0).abs() < 1e-3);
+            let bins = Bins::Equal(if is_even { 1 } else { BINS });
+            let pdf = |incoming: Vec3, outgoing: Vec3| {
+                Spectrum::splat(medium.phase.pdf_sr(crate::phase::Deflection::between(-incoming, outgoing)))
+            };
+            let mut all = matrix(bins, pdf);
+            conserve(bins, &mut all);
+            (bins, all.into())
+        })
+        .collect()
+}
+
+/// Scattering between all bins: a row of where light comes from for each bin that it goes to, by the means of `value` over directions
+/// of both.
+fn matrix(bins: Bins, value: impl Fn(Vec3, Vec3) -> Spectrum) -> Vec<Spectrum> {
+    const ASIDE: [[f32; 2]; 4] = [[0.2, 0.4], [0.6, 0.2], [0.4, 0.8], [0.8, 0.6]];
+    let of = |bin: usize| ASIDE.map(|at| bins.direction(bin, at));
+    let all: Vec<[Vec3; 4]> = (0..bins.count()).map(of).collect();
+    let mean = |from: &[Vec3; 4], to: &[Vec3; 4]| {
+        let pairs = from.iter().flat_map(|from| to.iter().map(|to| value(*from, *to)));
+        pairs.sum::<Spectrum>() / 16.0
+    };
+    all.iter().flat_map(|to| all.iter().map(|from| mean(from, to)).collect::<Vec<_>>()).collect()
+}
+
+/// Makes light that comes from each bin leave as much, over all directions.
+fn conserve(bins: Bins, matrix: &mut [Spectrum]) {
+    let count = bins.count();
+    let angle = 1.0 / (warp::SPHERE_PDF * count as f32);
+    for from in 0..count {
+        let all: Spectrum = (0..count).map(|to| matrix[to * count + from] * angle).sum();
+        let scale = Spectrum::select(all.cmpgt(Spectrum::ZERO), all.recip(), Spectrum::ZERO);
+        (0..count).for_each(|to| matrix[to * count + from] *= scale);
+    }
+}
+
+fn element(scene: &Scene, points: &[Point], phases: &[(Bins, Arc<[Spectrum]>)]) -> Element {
+    match points[points.len() / 2].interaction {
+        Interaction::Surface(_) => of_surfaces(scene, points),
+        Interaction::Medium(_, found) => of_medium(scene, points, &phases[found.medium.0 as usize]),
+    }
+}
+
+fn of_medium(scene: &Scene, points: &[Point], (bins, scattering): &(Bins, Arc<[Spectrum]>)) -> Element {
+    let [mut all, mut scattered, mut emitted] = [Spectrum::ZERO; 3];
+    for point in points {
+        let Interaction::Medium(position, found) = point.interaction else { continue };
+        let emission = scene.lights.of_medium(found.medium).map(|(_, emission)| emission.at(position));
+        all += found.sigma_t;
+        scattered += found.sigma_t * found.albedo;
+        emitted += emission.unwrap_or_default();
+    }
+    let over = |sum: Spectrum| Spectrum::select(all.cmpgt(Spectrum::ZERO), sum / all, Spectrum::ZERO);
+    let source = Distribution { bins: *bins, values: vec![over(emitted); bins.count()] };
+    Element { source, scattering: scattering.clone(), tint: over(scattered), normal: None }
+}
+
+fn of_surfaces(scene: &Scene, points: &[Point]) -> Element {
+    let own: Vec<&Point> = points.iter().step_by(points.len().div_ceil(LOOKED_AT)).collect();
+    let normal =
+        own.iter().filter_map(|point| point.interaction.normal()).sum::<Vec3>().normalize_or(Vec3::Z);
+    let is_dull = own.iter().all(|point| is_dull(scene, &point.interaction, normal));
+    let bins = if is_dull { Bins::Sides(normal) } else { Bins::Equal(BINS) };
+    let own = if is_dull { own } else { vec![own[0]] };
+    let mean = |value: &dyn Fn(&Interaction) -> Spectrum| {
+        own.iter().map(|point| value(&point.interaction)).sum::<Spectrum>() / own.len() as f32
+    };
+    let scattered = |incoming: Vec3, outgoing: Vec3| {
+        let of = |interaction: &Interaction| {
+            interaction.scatter::<Everything>(scene, outgoing, incoming, Transport::Radiance).value
+        };
+        mean(&of) / if is_dull { normal.dot(incoming).abs().max(f32::MIN_POSITIVE) } else { 1.0 }
+    };
+    let values = (0..bins.count()).map(|bin| {
+        let direction =
+            if is_dull { if bin == 0 { normal } else { -normal } } else { bins.direction(bin, [0.5; 2]) };
+        mean(&|interaction| match interaction {
+            Interaction::Surface(point) => emitted(scene, point, direction),
+            Interaction::Medium(..) => Spectrum::ZERO,
+        })
+    });
+    let source = Distribution { bins, values: values.collect() };
+    let scattering = if is_dull { sides(normal, scattered) } else { matrix(bins, scattered) };
+    Element { source, scattering: scattering.into(), tint: Spectrum::ONE, normal: Some(normal) }
+}
+
+/// The matrix of both sides, by directions well away from mirrors.
+fn sides(normal: Vec3, scattered: impl Fn(Vec3, Vec3) -> Spectrum) -> Vec<Spectrum> {
+    let frame = Frame::around(normal);
+    let at = |x: f32, y: f32, side: f32| frame.to_world(vec3(x, y, side * 0.8));
+    [1.0, -1.0]
+        .into_iter()
+        .flat_map(|to| [1.0, -1.0].map(|from| scattered(at(0.6, 0.0, from), at(0.0, 0.6, to))))
+        .collect()
+}
+
+/// True where it looks about the same from both sides of a `normal`, each.
+fn is_dull(scene: &Scene, interaction: &Interaction, normal: Vec3) -> bool {
+    let frame = Frame::around(normal);
+    [1.0, -1.0].into_iter().all(|side| {
+        let incoming = frame.to_world(vec3(0.6, 0.0, side * 0.8));
+        let arrival = Arrival {
+            medium: MediumIndex::VACUUM,
+            incoming,
+            edges: 1,
+            density: 1.0,
+            throughput: Spectrum::ONE,
+        };
+        !interaction.is_connectible(scene) || Event { interaction, survival: 1.0, arrival }.is_dull(scene)
+    })
+}

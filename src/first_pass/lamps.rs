@@ -1,0 +1,49 @@
+//! What lamps without a surface bring to the elements directly: points, beams and skies, which no element is.
+
+use super::{elements::Elements, point::Point};
+use crate::{
+    emitter::Kind,
+    guide::distribution::Distribution,
+    sampling::{Stream, stream::Purpose},
+    scene::Scene,
+    settings::options::Sky,
+};
+use rayon::prelude::*;
+
+/// Samples of each point of an element.
+const SAMPLES: u64 = 4;
+/// Of their random numbers.
+const SEED: u64 = 0x6c61_6d70_7300;
+
+/// The light that comes to each element.
+pub(super) fn light(scene: &Scene, elements: &Elements) -> Vec<Distribution> {
+    let is_lamp = |kind: &Kind| !matches!(kind, Kind::Surface(_) | Kind::Medium(_));
+    let has_lamps = scene.lights.all.iter().any(|light| is_lamp(&light.emitter.kind));
+    let lit = |(element, node): (usize, &u32)| {
+        let mut all = Distribution::dark(elements.all[element].source.bins);
+        let points = elements.points(*node);
+        for (index, point) in points.iter().enumerate().filter(|_| has_lamps) {
+            let first = elements.hierarchy.nodes[*node as usize].points.start as u64 + index as u64;
+            (0..SAMPLES).for_each(|sample| {
+                let mut stream = Stream::new(SEED, first, sample, Purpose::Study);
+                receive(scene, point, &mut all, (SAMPLES as usize * points.len()) as f32, &mut stream);
+            });
+        }
+        all
+    };
+    elements.hierarchy.elements.par_iter().enumerate().map(lit).collect()
+}
+
+/// Adds what one of `of` samples finds.
+fn receive(scene: &Scene, point: &Point, all: &mut Distribution, of: f32, stream: &mut Stream) {
+    let position = point.interaction.position();
+    let found = scene.lights.sample_emitter(&scene.geometry, position, Sky::NextEvent, stream);
+    let Some(sample) = found.filter(|sample| {
+        !matches!(scene.lights.all[sample.light as usize].emitter.kind, Kind::Surface(_) | Kind::Medium(_))
+    }) else {
+        return;
+    };
+    if let Some((towards, part)) = point.line_to_light(scene, &sample.point, stream) {
+        all.receive(towards, sample.value * part / (sample.pdf * of));
+    }
+}

@@ -1,0 +1,347 @@
+//! Radiance clustering (P03T sec. 4.2): links between elements and clusters, refined where much light goes, carry light until no more comes.
+
+use super::{
+    elements::{Element, Elements},
+    lamps,
+    oracle::{self, Pair},
+    point::Point,
+};
+use crate::{
+    guide::{
+        distribution::{Bins, Distribution},
+        hierarchy::Node,
+        links::{Aim, Aims},
+    },
+    math::{Channels as _, Frame, Spectrum, SpectrumExt, Vec3, measure, warp},
+    sampling::{Stream, stream::Purpose},
+    scene::Scene,
+    transport::{profiles::Everything, sample_free_flight},
+};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Pairs of nodes that are linked.
+pub(super) const NUMBER: usize = 1 << 19;
+/// How often links are made: each time by the light that those before have carried, and four times as many.
+const ROUNDS: u32 = 3;
+/// Lines by which a link is measured.
+const LINES: usize = 4;
+/// Pairs of points that are tried for them.
+const TRIES: usize = 16;
+/// Links of an element that walks may follow.
+const FOLLOWED: usize = 64;
+/// Points of nodes that a line joins count as far apart as this part of both radii, at least.
+const LEAST_APART: f32 = 0.1;
+/// Change of all radiance by one more bounce, below which no more is to come.
+const SETTLED: f64 = 1e-4;
+/// Of the random numbers of lines.
+const SEED: u64 = 0x6c69_6e6b_7300;
+
+/// What one of a link's lines carries.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    /// The node that light comes from.
+    sender: u32,
+    /// The unit direction to it.
+    towards: Vec3,
+    /// |cos| at the point of the sender; 1 in a medium.
+    cosine: f32,
+    /// Transmittance over squared distance, over the number of lines (1/m^2).
+    part: Spectrum,
+    /// The point of the sender.
+    from: Vec3,
+    /// That distance (m).
+    distance: f32,
+}
+
+/// Light that has come along a line.
+struct Carried<'a> {
+    link: &'a Link,
+    /// Perpendicular irradiance where the line ends (W/m^2).
+    irradiance: Spectrum,
+}
+
+impl Carried<'_> {
+    /// From where it comes to a place in the cluster where the line ends, and what comes: the sender's point is seen from there.
+    fn at(&self, place: Vec3) -> (Vec3, Spectrum) {
+        let Link { from, distance, towards, .. } = *self.link;
+        let Some((direction, _, squared)) = measure::between(place, from) else {
+            return (towards, self.irradiance);
+        };
+        let squared = squared.max(0.25 * distance * distance);
+        (direction, self.irradiance * (distance * distance / squared))
+    }
+}
+
+/// All light there is.
+struct State<'a> {
+    elements: &'a Elements,
+    /// What each element scatters of light that comes from lamps directly.
+    direct: Vec<Distribution>,
+    /// What each element scatters.
+    values: Vec<Distribution>,
+    /// 1, or 0 where what elements emit does not count.
+    emits: f32,
+    /// What each node sends: radiance on sides times area, else radiant intensity over directions (W/sr).
+    sent: Vec<Distribution>,
+    /// Power of each node (W), as luminance.
+    power: Vec<f32>,
+    /// What would come to each element if all had the radiance 1.
+    surrounded: Vec<Spectrum>,
+}
+
+/// The radiance that elements scatter.
+pub(super) fn solve(
+    scene: &Scene,
+    elements: &Elements,
+    most_bounces: u32,
+    number: usize,
+) -> Vec<Distribution> {
+    linked(scene, elements, most_bounces, number).0.values
+}
+
+/// Where each element gets the light that others scatter: the senders of its links and of those to clusters that it is in, as often as light comes from
+/// each. A link whose lines fail to reach the sender is followed the less often (P03T eq. 5.5).
+pub(super) fn aims(scene: &Scene, elements: &Elements, number: usize) -> Vec<Aims> {
+    let (mut state, links) = linked(scene, elements, MOST_BOUNCES, number);
+    state.emits = 0.0;
+    state.pull();
+    let boxes: Vec<Aim> =
+        (0..elements.hierarchy.nodes.len()).into_par_iter().map(|node| elements.aim(node as u32)).collect();
+    let aims = |(index, node): (usize, &u32)| {
+        let mut chances = BTreeMap::new();
+        for link in elements.hierarchy.upwards(*node).flat_map(|node| &links[node as usize]) {
+            let cosine = elements.all[index].cosine(link.towards);
+            *chances.entry(link.sender).or_insert(0.0) += state.carried(link).luminance() * cosine;
+        }
+        let aim = |(sender, chance): (u32, f32)| {
+            (chance > 0.0).then(|| Aim { probability: chance, ..boxes[sender as usize] })
+        };
+        Aims::of(chances.into_iter().filter_map(aim).collect(), FOLLOWED)
+    };
+    elements.hierarchy.elements.par_iter().enumerate().map(aims).collect()
+}
+
+/// Light as links have carried it, and those.
+fn linked<'a>(
+    scene: &Scene,
+    elements: &'a Elements,
+    most_bounces: u32,
+    number: usize,
+) -> (State<'a>, Vec<Vec<Link>>) {
+    let mut state = State::new(scene, elements, most_bounces);
+    let mut links = Vec::new();
+    for round in (0..ROUNDS).rev() {
+        links = state.links(scene, number >> (2 * round));
+        state.settle(&links, most_bounces);
+    }
+    (state, links)
+}
+
+impl<'a> State<'a> {
+    fn new(scene: &Scene, elements: &'a Elements, most_bounces: u32) -> Self {
+        let lit = lamps::light(scene, elements);
+        let scattered = lit.iter().zip(&elements.all).map(|(lit, element)| match most_bounces {
+            0 => Distribution::dark(lit.bins),
+            _ => element.scatter(lit),
+        });
+        let direct: Vec<_> = scattered.collect();
+        let (values, sent, power) = (direct.clone(), Vec::new(), Vec::new());
+        let around =
+            |(node, element): (&u32, &Element)| surrounded(scene, elements, *node, element.source.bins);
+        let surrounded = elements.hierarchy.elements.par_iter().zip(&elements.all).map(around).collect();
+        let mut state = Self { elements, direct, values, emits: 1.0, sent, power, surrounded };
+        state.pull();
+        state
+    }
+
+    /// What an element sends: radiance on sides times area, else radiant intensity over directions (W/sr).
+    fn sent(&self, node: &Node) -> Distribution {
+        let element = node.elements.start as usize;
+        let (own, source) = (&self.values[element], &self.elements.all[element].source);
+        let sum = |(own, source): (&Spectrum, &Spectrum)| (*own + self.emits * *source) * node.measure;
+        Distribution { bins: own.bins, values: own.values.iter().zip(&source.values).map(sum).collect() }
+    }
+
+    /// The light of clusters is that of their parts.
+    fn pull(&mut self) {
+        let nodes = &self.elements.hierarchy.nodes;
+        let mut all: Vec<Distribution> = vec![Distribution::dark(Bins::Equal(1)); nodes.len()];
+        for (index, node) in nodes.iter().enumerate().rev() {
+            all[index] = match node.parts {
+                None => self.sent(node),
+                Some(parts) => {
+                    let mut sum = Distribution::dark(self.elements.bins[index]);
+                    parts.iter().for_each(|part| sum.gather(&all[*part as usize]));
+                    sum
+                }
+            };
+        }
+        self.power = all.iter().map(|sent| sent.sum().luminance() * sent.bins.angle()).collect();
+        self.sent = all;
+    }
+
+    /// What comes by a link (W/m^2), from where.
+    #[inline]
+    fn carried(&self, link: &Link) -> Spectrum {
+        let sent = &self.sent[link.sender as usize];
+        let cosine = if matches!(sent.bins, Bins::Sides(_)) { link.cosine } else { 1.0 };
+        sent.at(-link.towards) * link.part * cosine
+    }
+
+    /// Carries light until no more comes, or it is scattered `most` times.
+    fn settle(&mut self, links: &[Vec<Link>], most: u32) {
+        let balance = self.balance(links);
+        self.values.clone_from(&self.direct);
+        self.pull();
+        let sum = |values: &[Distribution]| -> f64 {
+            values.iter().map(|value| f64::from(value.sum().element_sum())).sum()
+        };
+        let mut before = 0.0;
+        for _ in 0..most.min(MOST_BOUNCES) {
+            self.values = self.carry(links, &balance);
+            let after = sum(&self.values);
+            self.pull();
+            if (after - before).abs() <= SETTLED * after {
+                break;
+            }
+            before = after;
+        }
+    }
+
+    /// What comes to each element by `links`.
+    fn incoming(&self, links: &[Vec<Link>]) -> Vec<Distribution> {
+        let hierarchy = &self.elements.hierarchy;
+        let carried = |link| Carried { link, irradiance: self.carried(link) };
+        let carried: Vec<Vec<Carried<'_>>> =
+            links.par_iter().map(|links| links.iter().map(carried).collect()).collect();
+        let receive = |(index, node): (usize, &u32)| {
+            let mut incoming = Distribution::dark(self.values[index].bins);
+            for came in &carried[*node as usize] {
+                incoming.receive(came.link.towards, came.irradiance);
+            }
+            // What comes to a cluster is pushed down at once.
+            let place = hierarchy.nodes[*node as usize].centre();
+            for came in hierarchy.upwards(*node).skip(1).flat_map(|node| &carried[node as usize]) {
+                let (towards, irradiance) = came.at(place);
+                incoming.receive(towards, irradiance);
+            }
+            incoming
+        };
+        hierarchy.elements.par_iter().enumerate().map(receive).collect()
+    }
+
+    /// What light that comes to each element by `links` is to be multiplied with. If all elements had the same radiance, no more should
+    /// come than lines from each find around it: that would multiply for ever between neighbours in thick media.
+    fn balance(&mut self, links: &[Vec<Link>]) -> Vec<Spectrum> {
+        let (values, emits) = (self.values.clone(), std::mem::take(&mut self.emits));
+        self.values.iter_mut().for_each(|value| value.values.fill(Spectrum::ONE));
+        self.pull();
+        let came: Vec<Spectrum> = self.incoming(links).iter().map(Distribution::sum).collect();
+        (self.values, self.emits) = (values, emits);
+        let hierarchy = &self.elements.hierarchy;
+        let around = |node: u32| hierarchy.upwards(node).nth(AROUND).unwrap_or(node);
+        let factor = |(element, node): (usize, &u32)| {
+            let own = hierarchy.nodes[around(*node) as usize].elements.clone();
+            let own = own.start as usize..own.end as usize;
+            let sum = |of: &[Spectrum]| of[own.clone()].iter().copied().sum::<Spectrum>();
+            let factor = balanced(sum(&came), sum(&self.surrounded));
+            factor.min(Spectrum::select(
+                came[element].cmpgt(Spectrum::ZERO),
+                MOST * self.surrounded[element] / came[element],
+                Spectrum::ONE,
+            ))
+        };
+        hierarchy.elements.iter().enumerate().map(factor).collect()
+    }
+
+    /// What elements scatter when light has been carried once more.
+    fn carry(&self, links: &[Vec<Link>], balance: &[Spectrum]) -> Vec<Distribution> {
+        let incoming = self.incoming(links);
+        let scatter = |(index, mut incoming): (usize, Distribution)| {
+            incoming.values.iter_mut().for_each(|value| *value *= balance[index]);
+            let mut all = self.elements.all[index].scatter(&incoming);
+            all.add(&self.direct[index]);
+            all
+        };
+        incoming.into_par_iter().enumerate().map(scatter).collect()
+    }
+
+    /// About so many, by the nodes that they lead to.
+    fn links(&self, scene: &Scene, number: usize) -> Vec<Vec<Link>> {
+        let hierarchy = &self.elements.hierarchy;
+        let pairs = oracle::refine(hierarchy, &self.power, number);
+        let measured: Vec<_> = pairs.par_iter().map(|pair| self.measure(scene, pair)).collect();
+        let mut links = vec![Vec::new(); hierarchy.nodes.len()];
+        for (pair, measured) in pairs.iter().zip(measured) {
+            links[pair.receiver as usize].extend(measured);
+        }
+        links
+    }
+
+    /// The lines of a link between points of both nodes that see each other.
+    fn measure(&self, scene: &Scene, &Pair { sender, receiver, .. }: &Pair) -> Vec<Link> {
+        let [a, b] = [sender, receiver].map(|node| &self.elements.hierarchy.nodes[node as usize]);
+        let is_flat = a.parts.is_none() || matches!(self.elements.bins[sender as usize], Bins::Sides(_));
+        let least = LEAST_APART * (a.radius() + b.radius());
+        let mut stream = Stream::new(SEED, u64::from(sender), u64::from(receiver), Purpose::Study);
+        let mut pair = |_| {
+            let [from, to] =
+                [sender, receiver].map(|node| self.elements.pick(node, stream.uniform_precisely()));
+            let (towards, ..) = measure::between(to.interaction.position(), from.interaction.position())?;
+            (from.is_live(-towards) && to.is_live(towards)).then_some((from, to))
+        };
+        // A cluster is not in its own way: what faces the other counts.
+        let facing: Vec<_> = (0..TRIES).filter_map(&mut pair).take(LINES).collect();
+        let line = |&(from, to): &(&Point, &Point)| {
+            let (towards, transmittance) = to.line_to(scene, from, &mut stream)?;
+            // A cluster that is seen from around counts as if all of its light came from its middle.
+            let at = if is_flat { from.interaction.position() } else { a.centre() };
+            let distance = at.distance(to.interaction.position()).max(least);
+            let part = transmittance / (distance * distance * facing.len() as f32);
+            Some(Link { sender, towards, cosine: from.cosine(towards), part, from: at, distance })
+        };
+        facing.iter().filter_map(line).collect()
+    }
+}
+
+/// Of light that elements scatter, at most.
+const MOST_BOUNCES: u32 = 1024;
+/// Lines that say what is around an element, on each side.
+const SURROUNDED: u64 = 64;
+/// What comes by links, over what should, from which on that is no noise of lines.
+const TOO_MUCH: f32 = 1.25;
+
+/// Levels above an element at which what comes by links is compared with what should: there are lines enough.
+const AROUND: usize = 4;
+/// What comes to a single element, over what should, at most.
+const MOST: f32 = 2.0;
+
+/// What light that has come is to be multiplied with, for it to be no more than is due.
+fn balanced(came: Spectrum, due: Spectrum) -> Spectrum {
+    Spectrum::select(came.cmpgt(TOO_MUCH * due), due / came, Spectrum::ONE)
+}
+
+/// What would come to an element if all had the radiance 1. Lines that leave it by the cosine, or evenly, say so.
+fn surrounded(scene: &Scene, elements: &Elements, node: u32, bins: Bins) -> Spectrum {
+    let mut all = Spectrum::ZERO;
+    let sides: &[f32] = if matches!(bins, Bins::Sides(_)) { &[1.0, -1.0] } else { &[1.0] };
+    for side in sides {
+        for line in 0..SURROUNDED {
+            let mut stream = Stream::sobol(SEED, u64::from(node), line, Purpose::Pilot);
+            let u = stream.square();
+            let point = elements.pick(node, stream.uniform_precisely());
+            let direction = match point.interaction.normal().filter(|_| sides.len() > 1) {
+                Some(normal) => Frame::around(*side * normal).to_world(warp::to_cosine_hemisphere(u)),
+                None => warp::to_sphere(u),
+            };
+            let ahead = point.ahead(scene, direction);
+            let flight =
+                sample_free_flight::<Everything>(ahead, line as usize % 3, &mut stream, &mut |_, _| ());
+            if flight.interaction.is_some_and(|met| met.is_connectible(scene)) {
+                all += flight.state.ratio.to_spectrum() * flight.state.tint;
+            }
+        }
+    }
+    all * (bins.angle() * bins.count() as f32 / (SURROUNDED as usize * sides.len()) as f32)
+}

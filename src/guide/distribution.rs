@@ -1,0 +1,212 @@
+//! Light over directions (P03T sec. A.1): it is constant on both sides of a surface, or on bins of equal solid angle. Distributions
+//! add, they are evaluated and sampled; what reflects or scatters is a matrix that takes one to another.
+
+use crate::{
+    math::{Frame, Spectrum, SpectrumExt, Vec3, vec2, warp},
+    sampling::{Discrete, Stream},
+};
+use std::f32::consts::PI;
+
+/// The directions that have one value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bins {
+    /// Two: on the side of this unit normal, and on the other.
+    Sides(Vec3),
+    /// n x n of equal solid angle.
+    Equal(u32),
+}
+
+impl Bins {
+    /// How many there are.
+    pub fn count(self) -> usize {
+        match self {
+            Self::Sides(_) => 2,
+            Self::Equal(n) => (n * n) as usize,
+        }
+    }
+
+    /// The bin of a unit `direction`.
+    #[inline]
+    pub fn of(self, direction: Vec3) -> usize {
+        match self {
+            Self::Sides(normal) => usize::from(normal.dot(direction) < 0.0),
+            Self::Equal(1) => 0,
+            Self::Equal(n) => {
+                let at = (warp::from_sphere(direction) * n as f32).as_uvec2();
+                (at.y * n + at.x) as usize
+            }
+        }
+    }
+
+    /// A unit direction in the `bin`, for a point of the unit square: uniform if that is.
+    pub fn direction(self, bin: usize, [u, v]: [f32; 2]) -> Vec3 {
+        match self {
+            Self::Sides(normal) => {
+                let side = if bin == 0 { normal } else { -normal };
+                let around = warp::to_sphere(vec2(u, v));
+                if around.dot(side) < 0.0 { -around } else { around }
+            }
+            Self::Equal(n) => {
+                let (x, y) = (bin as u32 % n, bin as u32 / n);
+                warp::to_sphere(vec2(x as f32 + u, y as f32 + v) / n as f32)
+            }
+        }
+    }
+
+    /// The solid angle of a bin, times the mean cosine on sides (sr).
+    pub fn angle(self) -> f32 {
+        match self {
+            Self::Sides(_) => PI,
+            Self::Equal(n) => 1.0 / (warp::SPHERE_PDF * (n * n) as f32),
+        }
+    }
+
+    /// What light of perpendicular irradiance 1 from unit `direction` counts in its bin: the cosine at a surface that looks the same
+    /// from everywhere on a side; else 1, and scattering has the cosine.
+    #[inline]
+    pub fn cosine(self, direction: Vec3) -> f32 {
+        match self {
+            Self::Sides(normal) => normal.dot(direction).abs(),
+            Self::Equal(_) => 1.0,
+        }
+    }
+}
+
+/// A value for each bin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Distribution {
+    /// Which directions have one value.
+    pub bins: Bins,
+    /// Those values.
+    pub values: Vec<Spectrum>,
+}
+
+impl Distribution {
+    /// 0 everywhere.
+    pub fn dark(bins: Bins) -> Self {
+        Self { bins, values: vec![Spectrum::ZERO; bins.count()] }
+    }
+
+    /// In unit `direction`.
+    #[inline]
+    pub fn at(&self, direction: Vec3) -> Spectrum {
+        self.values[self.bins.of(direction)]
+    }
+
+    /// Adds light of perpendicular irradiance `irradiance` that comes from unit `direction`.
+    #[inline]
+    pub fn receive(&mut self, direction: Vec3, irradiance: Spectrum) {
+        self.values[self.bins.of(direction)] += irradiance * self.bins.cosine(direction);
+    }
+
+    /// Adds `other`, over the same bins.
+    pub fn add(&mut self, other: &Self) {
+        self.values.iter_mut().zip(&other.values).for_each(|(value, other)| *value += *other);
+    }
+
+    /// Adds what a part of a cluster sends: where both are of sides, or of as many bins, value by value; else the intensity in the middle of
+    /// each bin.
+    pub fn gather(&mut self, part: &Self) {
+        if let (Bins::Sides(own), Bins::Sides(other)) = (self.bins, part.bins) {
+            let turned = usize::from(own.dot(other) < 0.0);
+            (0..2).for_each(|side| self.values[side] += part.values[side ^ turned]);
+        } else if self.bins == part.bins {
+            self.add(part);
+        } else {
+            self.gather_unlike(part);
+        }
+    }
+
+    /// The same by the middles of bins, with as much power of each of the part's as it has.
+    fn gather_unlike(&mut self, part: &Self) {
+        let middles = (0..self.values.len()).map(|bin| self.bins.direction(bin, [0.5; 2]));
+        let seen: Vec<(usize, f32)> =
+            middles.map(|middle| (part.bins.of(middle), part.bins.cosine(middle))).collect();
+        let mut found = vec![0.0; part.values.len()];
+        seen.iter().for_each(|(bin, cosine)| found[*bin] += cosine * self.bins.angle());
+        for (value, (bin, cosine)) in self.values.iter_mut().zip(seen) {
+            *value += part.values[bin] * (cosine * part.bins.angle() / found[bin]);
+        }
+    }
+
+    /// What leaves where this arrives: `scattering` has a row of all bins of light that comes for each bin of light that leaves.
+    pub fn scattered(&self, scattering: &[Spectrum], tint: Spectrum) -> Self {
+        let rows = scattering.chunks_exact(self.values.len());
+        let sum = |row: &[Spectrum]| -> Spectrum {
+            row.iter().zip(&self.values).map(|(part, value)| *part * *value).sum()
+        };
+        Self { bins: self.bins, values: rows.map(|row| tint * sum(row)).collect() }
+    }
+
+    /// The sum over bins.
+    pub fn sum(&self) -> Spectrum {
+        self.values.iter().copied().sum()
+    }
+
+    /// A unit direction in which light leaves a surface of unit `normal`, which the sides are of, or a medium: by the cosine on each side,
+    /// else evenly within a bin. What leaves in all directions, over what leaves in this one at the same density (sr), comes with it;
+    /// none where it is dark.
+    pub fn sample(&self, normal: Vec3, stream: &mut Stream) -> Option<(Vec3, f32)> {
+        let chances = Discrete::new(self.values.iter().map(|value| f64::from(value.luminance())));
+        if chances.is_empty() {
+            return None;
+        }
+        let (bin, probability) = chances.sample_precisely(stream.uniform_precisely());
+        let u = stream.square();
+        let direction = match self.bins {
+            Bins::Sides(_) => {
+                let side = if bin == 0 { normal } else { -normal };
+                Frame::around(side).to_world(warp::to_cosine_hemisphere(u))
+            }
+            Bins::Equal(_) => self.bins.direction(bin, [u.x, u.y]),
+        };
+        Some((direction, self.bins.angle() / probability as f32))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::stream::Purpose;
+
+    /// What leaves in all directions is what samples say, on sides by the cosine; and a cluster sends as much as its part.
+    #[test]
+    fn power_is_that_of_samples_and_of_parts() {
+        let normal = Vec3::new(0.6, 0.0, 0.8);
+        for bins in [Bins::Sides(normal), Bins::Equal(1), Bins::Equal(4)] {
+            let mut own = Distribution::dark(bins);
+            own.values
+                .iter_mut()
+                .enumerate()
+                .for_each(|(bin, value)| *value = Spectrum::splat(1.0 + bin as f32));
+            let power = own.sum().x * bins.angle();
+            let mut stream = Stream::new(4, 0, 0, Purpose::Study);
+            let sample = |_| {
+                let (direction, over) = own.sample(normal, &mut stream).unwrap();
+                own.at(direction).x * over
+            };
+            let mean = (0..1000).map(sample).sum::<f32>() / 1000.0;
+            assert!((mean / power - 1.0).abs() < 1e-3, "{bins:?}: {mean} of {power}");
+            let mut cluster = Distribution::dark(Bins::Equal(8));
+            cluster.gather(&own);
+            let sent = cluster.sum().x * cluster.bins.angle();
+            assert!((sent / power - 1.0).abs() < 1e-3, "{bins:?}: {sent} of {power}");
+        }
+        assert!(
+            Distribution::dark(Bins::Equal(2))
+                .sample(normal, &mut Stream::new(4, 0, 1, Purpose::Study))
+                .is_none()
+        );
+    }
+
+    /// A surface that turns over in a cluster sends to the other side.
+    #[test]
+    fn sides_are_told_apart() {
+        let mut own = Distribution::dark(Bins::Sides(Vec3::Z));
+        own.receive(Vec3::new(0.0, 0.6, 0.8), Spectrum::splat(2.0));
+        assert!((own.at(Vec3::Z).x - 1.6).abs() < 1e-6 && own.at(-Vec3::Z) == Spectrum::ZERO);
+        let mut turned = Distribution::dark(Bins::Sides(-Vec3::Z));
+        turned.gather(&own);
+        assert!(turned.at(Vec3::Z).x > 1.5 && turned.at(-Vec3::Z) == Spectrum::ZERO);
+    }
+}
