@@ -73,6 +73,28 @@ fn from_within_a_ball() {
     agrees("lamp in glass", &over_floor(&shell, &bulb(), 4));
 }
 
+/// Across the way of the light, above the floor.
+fn tube(bsdf: &str) -> Value {
+    json!({"type": "cylinder", "p0": [-0.6, 0.0, 0.1], "p1": [0.7, 0.2, -0.1], "radius": 0.45, "bsdf": {"type": bsdf}})
+}
+
+#[test]
+fn by_a_tube_of_glass() {
+    agrees("tube and point", &over_floor(&tube(GLASS), &bulb(), 5));
+    agrees("tube and sun", &over_floor(&tube(GLASS), &sunlight(), 5));
+    let inside_out = with(tube(GLASS), &[("flip_normals", json!(true))]);
+    agrees("tube inside out", &over_floor(&inside_out, &bulb(), 4));
+}
+
+/// Its outside; and its inside, where the light comes by an open end.
+#[test]
+fn by_a_tube_of_metal() {
+    agrees("metal tube and point", &over_floor(&tube(METAL), &bulb(), 3));
+    let ring = json!({"type": "cylinder", "p0": [0, -0.69, 0], "p1": [0, -0.3, 0], "radius": 0.6, "flip_normals": true, "bsdf": {"type": METAL}});
+    agrees("ring and point", &over_floor(&ring, &point([0.9, 1.5, 0.3], 3.0), 5));
+    agrees("ring and sun", &over_floor(&ring, &sun([-0.6, -1.0, -0.2], 2.0), 5));
+}
+
 #[test]
 fn by_planes() {
     let turned = json!([{"type": "scale", "value": [0.5, 0.3, 0.4]}, {"type": "rotate", "axis": [1, 1, 0], "angle": 30}]);

@@ -1,15 +1,18 @@
 //! Smooth shapes, and the chains over them.
 
 use super::{
-    ball::{Course, Round},
-    chain::{Chain, Link, MOST, Target},
+    chain::{Chain, Link, Target},
+    circle::{Course, Round},
     flats::{self, Plane, Way},
+    tube::Tube,
 };
 use crate::{
     bsdf::{BsdfModel, Smooth},
     math::{DVec3, Vec3, measure},
     scene::Scene,
-    shape::{Curved, CurvedModel as _, Flat, Hit, Primitive, Ray, Shape, ShapeModel as _, SurfacePoint},
+    shape::{
+        Curved, CurvedModel as _, Flat, Hit, Patch, Primitive, Ray, Shape, ShapeModel as _, SurfacePoint,
+    },
 };
 
 /// A smooth shape.
@@ -27,10 +30,11 @@ enum Form {
         center: DVec3,
         radius: f64,
     },
+    Tube(Tube),
 }
 
 impl Body {
-    /// All of `scene` that are made of planes or balls.
+    /// All of `scene` that are made of planes, balls or tubes.
     pub(super) fn all(scene: &Scene) -> Vec<Self> {
         (0..scene.surfaces.len() as u32).filter_map(|shape| Self::of(scene, shape)).collect()
     }
@@ -45,11 +49,12 @@ impl Body {
         Some(Self { shape, form, ratio })
     }
 
-    /// Every chain of up to [`MOST`] points over it `from` a point to a target.
+    /// Every chain of up to [`super::chain::MOST`] points over it `from` a point to a target.
     pub(super) fn chains(&self, from: DVec3, target: Target, found: &mut impl FnMut(&Chain)) {
         match &self.form {
             Form::Flats(flats) => self.over_flats(flats, from, target, found),
             Form::Ball { center, radius } => self.over_ball(*center, *radius, from, target, found),
+            Form::Tube(tube) => self.over_tube(tube, from, target, found),
         }
     }
 
@@ -131,21 +136,39 @@ impl Body {
         found: &mut impl FnMut(&Chain),
     ) {
         let inside = self.ratio.unwrap_or(1.0);
-        let ends = [from.distance(center) < radius, target.is_within(center, radius)];
-        for course in courses(ends, self.ratio.is_some()) {
-            let Some(round) = Round::new((center, radius, inside), from, target, course) else { continue };
-            round.solve(&mut |points| {
-                let link = |(number, position): (usize, &DVec3)| Link {
-                    position: *position,
-                    normal: (*position - center) / radius,
+        let (start, to) = (from - center, target.relative_to(center));
+        let sides = [start.length() < radius, to.is_within(radius)].map(|inside| [!inside, inside]);
+        for course in Course::all(sides, self.ratio.is_some()) {
+            let Some(round) = Round::new(radius, start, to, course) else { continue };
+            let flight = |place: f64| round.fly(round.begin(place), inside);
+            round.ways(flight, &mut |_, flight| {
+                let link = |(number, point): (usize, &DVec3)| Link {
+                    position: *point + center,
+                    normal: *point / radius,
                     curvature: 1.0 / radius,
+                    axis: DVec3::ZERO,
                     ratio: course.refracts(number, inside),
                     primitive: 0,
                 };
-                let links: Vec<Link> = points.iter().enumerate().map(link).collect();
-                found(&Chain::new(&links));
+                let points = round.points(flight);
+                let links = points[..course.meetings].iter().enumerate().map(link);
+                found(&Chain::new(&links.collect::<Vec<_>>()));
             });
         }
+    }
+
+    fn over_tube(&self, tube: &Tube, from: DVec3, target: Target, found: &mut impl FnMut(&Chain)) {
+        tube.solve(self.ratio, from, target, &mut |course, points| {
+            let link = |(number, position): (usize, &DVec3)| Link {
+                position: *position,
+                normal: tube.normal(*position),
+                curvature: 1.0 / tube.radius,
+                axis: tube.axis,
+                ratio: course.refracts(number, self.ratio.unwrap_or(1.0)),
+                primitive: 0,
+            };
+            found(&Chain::new(&points.iter().enumerate().map(link).collect::<Vec<_>>()));
+        });
     }
 
     /// The surface where a ray from `origin` comes to a link; none where there is nothing of the plane.
@@ -153,7 +176,7 @@ impl Body {
         let (direction, t, _) = measure::between(origin, link.position.as_vec3())?;
         let ray = Ray { origin, direction, t_max: f32::INFINITY };
         let [t, u, v] = match &self.form {
-            Form::Ball { .. } => [t, 0.0, 0.0],
+            Form::Ball { .. } | Form::Tube(_) => [t, 0.0, 0.0],
             Form::Flats(flats) => match &flats[link.primitive].1 {
                 Primitive::Flat(flat) => {
                     let [u, v] = within(flat, link.position)?;
@@ -175,6 +198,7 @@ fn chain_over(flats: &[(Plane, Primitive)], links: &[(usize, Option<f64>)], poin
         position,
         normal: flats[*number].0.normal,
         curvature: 0.0,
+        axis: DVec3::ZERO,
         ratio: *ratio,
         primitive: *number,
     };
@@ -203,7 +227,15 @@ impl Form {
                 let turn = f64::from(sphere.point_near(above).shading.normal.z.signum());
                 Some((Self::Ball { center: center.as_dvec3(), radius: f64::from(radius) }, turn))
             }
-            Shape::Cylinder(_) | Shape::Mesh(_) | Shape::Instance(_) => None,
+            Shape::Cylinder(cylinder) => {
+                let Patch::Tube { ends: [base, end], radius } = cylinder.patch() else { return None };
+                let (axis, length) = ((end - base).try_normalize()?, end.distance(base));
+                let tube = Tube { base, axis, length, radius };
+                let beside = base + axis.any_orthonormal_vector() * radius;
+                let shading = cylinder.point_near(beside).shading.normal.as_dvec3();
+                Some((Self::Tube(tube), shading.dot(tube.normal(beside)).signum()))
+            }
+            Shape::Mesh(_) | Shape::Instance(_) => None,
         }
     }
 
@@ -235,31 +267,6 @@ fn plane(shape: &Shape, number: usize) -> Option<(Plane, Primitive)> {
     Some((Plane::new(flat.corner.as_dvec3() + (u + v) * 0.5, normal), primitive))
 }
 
-impl Course {
-    /// The index beyond over that before where the light meets the ball for time `number`, if it is refracted there.
-    fn refracts(&self, number: usize, inside: f64) -> Option<f64> {
-        match (number == 0 && self.enters, number + 1 == self.meetings && self.leaves) {
-            (true, _) => Some(inside),
-            (false, true) => Some(1.0 / inside),
-            (false, false) => None,
-        }
-    }
-}
-
-/// What light can do at a ball between a start and a target, of which is said whether they are inside.
-fn courses([starts_inside, ends_inside]: [bool; 2], transmits: bool) -> Vec<Course> {
-    let course = |meetings| Course { meetings, enters: !starts_inside, leaves: !ends_inside };
-    let within = 1..=if transmits { MOST } else { 0 };
-    match (starts_inside, ends_inside) {
-        (true, true) => (1..=MOST).map(course).collect(),
-        (false, false) => {
-            let reflected = Course { meetings: 1, enters: false, leaves: false };
-            std::iter::once(reflected).chain(within.filter(|meetings| *meetings > 1).map(course)).collect()
-        }
-        _ => within.map(course).collect(),
-    }
-}
-
 impl Target {
     /// The signed distance above a plane; of a direction, its rise.
     fn height(self, plane: &Plane) -> f64 {
@@ -269,7 +276,7 @@ impl Target {
         }
     }
 
-    fn is_within(self, center: DVec3, radius: f64) -> bool {
-        matches!(self, Self::Point(point) if point.distance(center) < radius)
+    fn is_within(self, radius: f64) -> bool {
+        matches!(self, Self::Point(point) if point.length() < radius)
     }
 }

@@ -22,6 +22,21 @@ impl Target {
             Self::Direction(direction) => direction,
         }
     }
+
+    /// The same where `origin` is the origin.
+    pub(super) fn relative_to(self, origin: DVec3) -> Self {
+        match self {
+            Self::Point(point) => Self::Point(point - origin),
+            direction => direction,
+        }
+    }
+
+    /// The point, from the origin, or the direction.
+    pub(super) fn vector(self) -> DVec3 {
+        match self {
+            Self::Point(vector) | Self::Direction(vector) => vector,
+        }
+    }
 }
 
 /// A point of a chain.
@@ -31,8 +46,10 @@ pub(super) struct Link {
     pub(super) position: DVec3,
     /// Unit normal, either one.
     pub(super) normal: DVec3,
-    /// How the normal turns along the surface: 1 over the radius of a ball along its outward normal, 0 on a plane (1/m).
+    /// How the normal turns along the surface: 1 over the radius of a ball or a tube along its outward normal, 0 on a plane (1/m).
     pub(super) curvature: f64,
+    /// The unit direction of a tube's axis, along which the normal does not turn; else 0.
+    pub(super) axis: DVec3,
     /// The index beyond over that before; none where it reflects.
     pub(super) ratio: Option<f64>,
     /// Which primitive of the shape it lies on.
@@ -122,7 +139,8 @@ impl Beam {
         let (direction, normal) = (self.direction, link.normal);
         let cosine = direction.dot(normal);
         let turned = |i: usize| {
-            let normals = self.origins[i] * link.curvature;
+            let moved = self.origins[i];
+            let normals = (moved - link.axis * moved.dot(link.axis)) * link.curvature;
             (normals, self.directions[i].dot(normal) + direction.dot(normals))
         };
         let Some(ratio) = link.ratio else {

@@ -1,14 +1,16 @@
 //! Connections by way of smooth surfaces. Light of a point or of a single direction which smooth glass or a mirror sends to a
 //! vertex comes there along single paths, which no walk meets by chance; where the camera sees that vertex by way of smooth
-//! surfaces alone, no other strategy makes the path. The paths over one shape are solved for: all over a plane or a ball, of up to
+//! surfaces alone, no other strategy makes the path. The paths over one shape are solved for: all over a plane, a ball or a tube, of up to
 //! [`chain::MOST`] points there. They count as connections of s >= 2 light vertices, with the weight 1.
 
-mod ball;
 mod bodies;
 mod chain;
+mod circle;
 mod flats;
+mod search;
 #[cfg(test)]
 mod tests;
+mod tube;
 
 use super::{
     camera_path::CameraPath,

@@ -1,9 +1,10 @@
 //! Chains against solutions found by trying everything, and what they bring against the strategies that can do without them.
 
 use super::{
-    ball::{Course, Round},
     bodies::Body,
-    chain::{Chain, Target},
+    chain::{Chain, Target, refracted},
+    circle::{Course, Round},
+    tube::Tube,
 };
 use crate::{
     math::DVec3,
@@ -30,6 +31,11 @@ const CHROME: &str = r#""ball": {"type": "sphere", "radius": 0.5, "bsdf": {"type
 const BLOCK: &str = r#""block": {"type": "cube", "bsdf": {"type": "dielectric"}, "to_world": [{"type": "scale", "value": [0.4, 0.3, 0.5]},
     {"type": "rotate", "axis": [1, 2, 0.5], "angle": 40}]}"#;
 const POND: &str = r#""pond": {"type": "disk", "bsdf": {"type": "dielectric", "int_ior": 1.33}}"#;
+const PIPE: &str = r#""pipe": {"type": "cylinder", "p0": [0.1, -0.6, 0.2], "p1": [-0.2, 0.7, 0.3], "radius": 0.6,
+    "bsdf": {"type": "dielectric"}}"#;
+const BORE: &str = r#""bore": {"type": "cylinder", "p0": [0.1, -0.6, 0.2], "p1": [-0.2, 0.7, 0.3], "radius": 0.6, "flip_normals": true,
+    "bsdf": {"type": "dielectric", "int_ior": 1.33}}"#;
+const ALL: [&str; 7] = [GLASS, BUBBLE, CHROME, BLOCK, POND, PIPE, BORE];
 
 /// Every chain from points around and within to points and directions.
 fn every(body: &Body, mut check: impl FnMut(DVec3, Target, &Chain, &mut Stream)) -> u32 {
@@ -49,7 +55,7 @@ fn every(body: &Body, mut check: impl FnMut(DVec3, Target, &Chain, &mut Stream))
 /// Rays along chains keep to the laws of reflection and refraction.
 #[test]
 fn chains_keep_to_the_laws() {
-    for part in [GLASS, BUBBLE, CHROME, BLOCK, POND] {
+    for part in ALL {
         let (_, bodies) = bodies(&[part]);
         let count = every(&bodies[0], |from, target, chain, _| {
             let mut before = from;
@@ -73,7 +79,7 @@ fn chains_keep_to_the_laws() {
 #[test]
 fn the_spread_is_that_of_neighbours() {
     const STEP: f64 = 1e-5;
-    for part in [GLASS, BUBBLE, CHROME, BLOCK, POND] {
+    for part in ALL {
         let (_, bodies) = bodies(&[part]);
         let mut compared = 0;
         every(&bodies[0], |from, target, chain, _| {
@@ -122,21 +128,96 @@ fn every_way_over_a_ball_is_found() {
     let (mut ways, mut missed) = (0, 0);
     for number in 0..1500 {
         let (from, to) = (point(&mut stream, 2.5), point(&mut stream, 2.5));
-        let inside = [from, to].map(|place| place.length() < 1.0);
+        let outside = [from, to].map(|place| place.length() > 1.0);
         let ratio = [1.5, 1.0 / 1.33, 2.4][number % 3];
         for meetings in 1..=3 {
-            let course = Course { meetings, enters: !inside[0], leaves: !inside[1] };
-            if course.enters && course.leaves && meetings == 1 {
-                continue;
-            }
-            let round = Round::new((DVec3::ZERO, 1.0, ratio), from, Target::Point(to), course).unwrap();
+            let course = Course { meetings, outside };
+            let round = Round::new(1.0, from, Target::Point(to), course).unwrap();
             let mut found = 0;
-            round.solve(&mut |_| found += 1);
+            round.ways(|place| round.fly(round.begin(place), ratio), &mut |_, _| found += 1);
             // Where light hardly leaves the ball, a way may lie beyond the last of so many places.
-            let all = round.count(20_000);
+            let all = round.count(ratio, 20_000);
             ways += all;
             missed += all.saturating_sub(found);
         }
     }
     assert!(ways > 1000 && missed * 500 <= ways, "{missed} of {ways}");
+}
+
+/// A tube, and light that is sent over it.
+struct Sent<'a> {
+    tube: &'a Tube,
+    index: Option<f64>,
+    origin: DVec3,
+    direction: DVec3,
+    points: Vec<DVec3>,
+}
+
+impl Sent<'_> {
+    /// How far it is to the tube.
+    fn free(&self) -> Option<f64> {
+        let Tube { base, axis, length, radius } = *self.tube;
+        let across = |vector: DVec3| vector - axis * vector.dot(axis);
+        let (from, along) = (across(self.origin - base), across(self.direction));
+        let (a, b, c) = (along.length_squared(), from.dot(along), from.length_squared() - radius * radius);
+        let root = (b * b - a * c).sqrt();
+        [(-b - root) / a, (-b + root) / a].into_iter().find(|distance| {
+            let height = (self.origin + self.direction * *distance - base).dot(axis);
+            *distance > 1e-7 && (0.0..=length).contains(&height)
+        })
+    }
+
+    /// To the next point, and beyond as `number` says; none where it is lost.
+    fn advance(&mut self, number: f64) -> Option<()> {
+        self.origin += self.direction * self.free()?;
+        self.points.push(self.origin);
+        let normal = self.tube.normal(self.origin);
+        let cosine = self.direction.dot(normal);
+        self.direction = match self.index.filter(|_| number < 0.6) {
+            Some(index) => refracted(self.direction, normal, if cosine > 0.0 { 1.0 / index } else { index })?,
+            None => self.direction - normal * (2.0 * cosine),
+        };
+        Some(())
+    }
+}
+
+/// Light that is sent over a tube in all ways comes to targets that are then to be reached: how many are not, of how many.
+fn lost(index: Option<f64>, length: f64, is_parallel: bool) -> [usize; 2] {
+    let axis = DVec3::new(0.3, -0.5, 0.8).normalize();
+    let tube = Tube { base: DVec3::new(0.1, -0.2, 0.3), axis, length, radius: 0.7 };
+    let middle = tube.base + axis * (0.5 * length);
+    let mut stream = Stream::new(43, 0, 0, Purpose::Study);
+    let (mut lost, mut all) = (0, 0);
+    for turn in 0..4000 {
+        let from = middle + point(&mut stream, if turn % 2 == 0 { 0.8 } else { 2.5 });
+        let direction = (middle + point(&mut stream, 1.2) - from).normalize();
+        let mut sent = Sent { tube: &tube, index, origin: from, direction, points: Vec::new() };
+        let is_sent = (0..=turn / 2 % 3).all(|_| sent.advance(f64::from(stream.uniform())).is_some());
+        let part = f64::from(stream.uniform()).max(0.02);
+        let target = match (is_parallel, sent.free()) {
+            (true, Some(_)) => continue,
+            (true, None) => Target::Direction(sent.direction),
+            (false, free) => Target::Point(sent.origin + sent.direction * free.unwrap_or(3.0) * part),
+        };
+        if is_sent {
+            let is_same = |points: &[DVec3]| {
+                let mut pairs = points.iter().zip(&sent.points);
+                points.len() == sent.points.len() && pairs.all(|(a, b)| a.distance(*b) < 1e-6)
+            };
+            let mut found = 0;
+            tube.solve(index, from, target, &mut |_, points| found += usize::from(is_same(points)));
+            (lost, all) = (lost + usize::from(found != 1), all + 1);
+        }
+    }
+    [lost, all]
+}
+
+/// From around the tube, from within, through its walls and its ends.
+#[test]
+fn every_way_over_a_tube_is_found() {
+    let indices = [None, Some(1.0 / 2.4), Some(0.75), Some(1.1), Some(1.5), Some(2.4)];
+    let tubes = indices.iter().flat_map(|index| [1.5, 5.0].map(|length| (*index, length)));
+    let counts = tubes.flat_map(|(index, length)| [false, true].map(|sun| lost(index, length, sun)));
+    let [missed, ways] = counts.fold([0, 0], |sum, [lost, all]| [sum[0] + lost, sum[1] + all]);
+    assert!(ways > 20_000 && missed * 2000 <= ways, "{missed} of {ways}");
 }
