@@ -85,7 +85,7 @@ PARTS = {
     "bias": Part("bias", (".md", ".json", ".svg"), 15),
     "thresholds": Part("thresholds", (".md",), 17),
     "progressive": Part("progressive", (".md",), 3),
-    "first_passes": Part("first_passes", (".md", ".json"), 12),
+    "first_passes": Part("first_passes", (".md", ".json"), 30),
 }
 """By the names of their reports."""
 

@@ -6,7 +6,7 @@ use crate::{
     emitter::{Kind, SurfaceModel as _},
     guide::{
         distribution::{Bins, Distribution},
-        hierarchy::{Hierarchy, Sample},
+        hierarchy::{Hierarchy, Node, Sample},
         links::Aim,
     },
     math::{Bounds, Frame, Spectrum, SpectrumExt, Vec3, vec3, warp},
@@ -124,6 +124,20 @@ impl Elements {
         let half = (0.5 * size).max(Vec3::splat(THICKNESS * size.max_element())) * WIDENED;
         let centre = frame.to_world(0.5 * (around.low + around.high));
         Aim { centre, frame, half: half.max(Vec3::splat(f32::MIN_POSITIVE)), probability: 1.0 }
+    }
+
+    /// The power that each element sends by its radiance (W), as luminance.
+    pub(super) fn powers(&self, sent: &[Distribution]) -> Vec<f32> {
+        let nodes = self.hierarchy.elements.iter().map(|node| &self.hierarchy.nodes[*node as usize]);
+        let power = |(node, sent): (&Node, &Distribution)| {
+            (sent.sum() * node.measure).luminance() * sent.bins.angle()
+        };
+        nodes.zip(sent).map(power).collect()
+    }
+
+    /// That of all together (W).
+    pub(super) fn power(&self, sent: &[Distribution]) -> f32 {
+        self.powers(sent).iter().sum()
     }
 
     /// The points that stand for a node.

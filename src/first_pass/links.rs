@@ -32,8 +32,8 @@ const TRIES: usize = 16;
 const FOLLOWED: usize = 64;
 /// Points of nodes that a line joins count as far apart as this part of both radii, at least.
 const LEAST_APART: f32 = 0.1;
-/// Change of all radiance by one more bounce, below which no more is to come.
-const SETTLED: f64 = 1e-4;
+/// Part of all power that one more bounce brings, below which no more is to come.
+const SETTLED: f32 = 1e-3;
 /// Of the random numbers of lines.
 const SEED: u64 = 0x6c69_6e6b_7300;
 
@@ -192,21 +192,30 @@ impl<'a> State<'a> {
     /// Carries light until no more comes, or it is scattered `most` times.
     fn settle(&mut self, links: &[Vec<Link>], most: u32) {
         let balance = self.balance(links);
-        self.values.clone_from(&self.direct);
-        self.pull();
-        let sum = |values: &[Distribution]| -> f64 {
-            values.iter().map(|value| f64::from(value.sum().element_sum())).sum()
-        };
-        let mut before = 0.0;
+        let mut all = self.direct.clone();
+        self.values.clone_from(&all);
+        let mut before = f32::INFINITY;
         for _ in 0..most.min(MOST_BOUNCES) {
-            self.values = self.carry(links, &balance);
-            let after = sum(&self.values);
             self.pull();
-            if (after - before).abs() <= SETTLED * after {
+            let mut more = self.carry(links, &balance);
+            // After the first time light that elements emit has been carried.
+            self.emits = 0.0;
+            let mut power = self.elements.power(&more);
+            // Light does not grow; where links multiply it, they are too few for how it is scattered.
+            if power > before {
+                let back = before / power;
+                more.iter_mut().flat_map(|more| &mut more.values).for_each(|value| *value *= back);
+                power = before;
+            }
+            all.iter_mut().zip(&more).for_each(|(all, more)| all.add(more));
+            self.values = more;
+            before = power;
+            if power <= SETTLED * self.elements.power(&all) {
                 break;
             }
-            before = after;
         }
+        (self.values, self.emits) = (all, 1.0);
+        self.pull();
     }
 
     /// What comes to each element by `links`.
@@ -255,14 +264,12 @@ impl<'a> State<'a> {
         hierarchy.elements.iter().enumerate().map(factor).collect()
     }
 
-    /// What elements scatter when light has been carried once more.
+    /// What elements scatter of what links carry.
     fn carry(&self, links: &[Vec<Link>], balance: &[Spectrum]) -> Vec<Distribution> {
         let incoming = self.incoming(links);
         let scatter = |(index, mut incoming): (usize, Distribution)| {
             incoming.values.iter_mut().for_each(|value| *value *= balance[index]);
-            let mut all = self.elements.all[index].scatter(&incoming);
-            all.add(&self.direct[index]);
-            all
+            self.elements.all[index].scatter(&incoming)
         };
         incoming.into_par_iter().enumerate().map(scatter).collect()
     }
@@ -305,8 +312,8 @@ impl<'a> State<'a> {
     }
 }
 
-/// Of light that elements scatter, at most.
-const MOST_BOUNCES: u32 = 1024;
+/// How often light is carried, at most.
+const MOST_BOUNCES: u32 = 64;
 /// Lines that say what is around an element, on each side.
 const SURROUNDED: u64 = 64;
 /// What comes by links, over what should, from which on that is no noise of lines.

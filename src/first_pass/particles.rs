@@ -8,7 +8,7 @@ use crate::{
         distribution::{Bins, Distribution},
         hierarchy::Node,
     },
-    math::{Channels as _, Spectrum, SpectrumExt, Vec3},
+    math::{Channels as _, Spectrum, Vec3},
     sampling::{Discrete, Stream, stream::Purpose},
     scene::Scene,
     shape::SurfacePoint,
@@ -48,7 +48,7 @@ pub(super) fn solve(
     let mut direct = Some(lamps::light(scene, elements));
     let mut sent = 0;
     for round in 0..u64::from(most_bounces) {
-        let power = powers(elements, &unsent);
+        let power = elements.powers(&unsent);
         let total: f32 = power.iter().sum();
         first = f32::max(first, total);
         let number = (lines as f32 * (total / first.max(f32::MIN_POSITIVE))) as usize;
@@ -60,7 +60,7 @@ pub(super) fn solve(
         }
         unsent = scatter(lit);
         all.iter_mut().zip(&unsent).for_each(|(all, more)| all.add(more));
-        let left: f32 = powers(elements, &unsent).iter().sum();
+        let left: f32 = elements.power(&unsent);
         first = f32::max(first, left);
         if left <= LEFT * first || sent == MOST_LINES {
             break;
@@ -74,14 +74,6 @@ struct Sent {
     unsent: Vec<Distribution>,
     /// That of each element (W), as luminance.
     power: Vec<f32>,
-}
-
-/// The power that each element has to send (W), as luminance.
-fn powers(elements: &Elements, unsent: &[Distribution]) -> Vec<f32> {
-    let nodes = elements.hierarchy.elements.iter().map(|node| &elements.hierarchy.nodes[*node as usize]);
-    let power =
-        |(node, sent): (&Node, &Distribution)| (sent.sum() * node.measure).luminance() * sent.bins.angle();
-    nodes.zip(unsent).map(power).collect()
 }
 
 /// Where a line ends.
