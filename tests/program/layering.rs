@@ -18,6 +18,7 @@ const LAYERS: &[&[&str]] = &[
     &["scene"],
     &["guide"],
     &["transport"],
+    &["first_pass"],
     &["passes"],
     &["learning"],
     &["render"],
