@@ -74,9 +74,9 @@ fn furnaces_are_in_balance() {
     ] {
         assert_close(name, mean(&mut stage, Algorithm::Gather), 3.0, 0.01);
         for (preview, found) in in_elements(&mut stage) {
-            // Links see no mirrors: what is behind them is dark.
-            let is_blind = preview.contains("links") && ["mirror", "glass"].contains(&name);
-            assert_close(&format!("{name}, {preview}"), found, 3.0, if is_blind { 0.2 } else { 0.02 });
+            // Links see no mirrors, and are too few for light that fog scatters often.
+            let loses = preview.contains("links") && name != "empty";
+            assert_close(&format!("{name}, {preview}"), found, 3.0, if loses { 0.25 } else { 0.02 });
         }
     }
 }
