@@ -150,8 +150,8 @@ def page(rows: list[Row], names: list[str], effort: Effort) -> str:
         "A first pass (P03T ch. 4) solves for the light of a scene coarsely: by links between clusters (4.2), or by particles (4.3). *links*, beside *quadtree* and *bins*, is "
         "`pt --guide always` by that basis; *first pass* is the solution itself, *gather* ends paths in it; both are biased.\n",
         f"Below, the relMSE of `pt` over that of others after the same seconds: {effort.seconds:g} s, the first pass included, {effort.size} pixels, {effort.threads} threads, {effort.seeds} seeds; "
-        "intervals hold 95 %. What has less than half of that left after its first pass gets so much for its samples, and is compared with `pt` after as many seconds as it took. "
-        "References are by `bdpt`; their own noise is subtracted. Of what is biased, a ratio holds for these seconds alone.\n",
+        "intervals hold 95 %. A contender has half of these seconds for its samples at least. If its first pass leaves it less, it renders for longer, and `pt` is taken after as many seconds. "
+        "References are by `bdpt`; their own noise is subtracted. The error of a biased contender stops falling: its ratio holds for these seconds only.\n",
         f"| scene | {' | '.join(others)} |",
         "|---" * (1 + len(others)) + "|",
         *(line_of_errors(row, others).rstrip() for row in rows),

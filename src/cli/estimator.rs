@@ -35,9 +35,9 @@ pub struct Estimator {
     /// Light transport algorithm [default: the scene's integrator]
     ///
     /// bdpt: bidirectional path tracing; pt: path tracing from the camera; lt: light tracing (particle tracing)
-    /// from the emitters; first-pass: a preview of a coarse solution in elements of surfaces and media, made in seconds: biased, by
-    /// blur; gather: a preview by path tracing that ends where it scatters for the second time, in a first pass: biased, by blur, and far less
-    /// noisy than pt where surfaces light each other, but noisier in a dense cloud; fog: a preview of the first visible surfaces without
+    /// from the emitters; first-pass: a preview, a coarse solution in elements of surfaces and media, biased by blur; gather: a preview by
+    /// path tracing that ends at the second scattering, in a first pass: it is biased by blur, far less noisy than pt where surfaces light
+    /// each other, and noisier in a dense cloud; fog: a preview of the first visible surfaces without
     /// shadows, behind fog of constant radiance; 4 samples per pixel are enough. In scenes with the integrator single_scattering or
     /// non_scattering its restriction of media still applies, unless --scattering says otherwise. Mitsuba's path, volpath and
     /// volpathmis are pt here, its ptracer is lt.
@@ -103,16 +103,17 @@ pub struct Estimator {
 
     /// How a guide stores directions, for comparison [default: the scene's, or quadtree]
     ///
-    /// quadtree: finer where much light comes from; bins: 16 x 16 everywhere; haar: by wavelets; links: by the elements that light comes
-    /// from in a first pass (P03T sec. 5.2.3), for pt. The expected image is the same.
+    /// quadtree: finer where much light comes from; bins: 16 x 16 everywhere; haar: by wavelets; links: the elements of a first pass that
+    /// light comes from (P03T sec. 5.2.3), for pt. The expected image is the same.
     #[arg(long, value_name = "NAME", value_parser = one_of(&Basis::NAMES), help_heading = heading::STUDIES)]
     pub basis: Option<Basis>,
 
     /// How the first pass of the integrators first-pass and gather is solved [default: the scene's, else walks for gather, particles
     /// for first-pass]
     ///
-    /// walks: by walks from the camera, in cells where they came; particles: by particles from element to element, which pass mirrors and glass (P03T sec. 4.3); links: by links between
-    /// elements and clusters, most of them where most light goes (P03T sec. 4.2).
+    /// walks: walks from the camera find the radiance of cells where they come; particles: particles go from element to element, and
+    /// pass mirrors and glass (P03T sec. 4.3); links: links join elements and clusters, most of them where most light goes (P03T
+    /// sec. 4.2). They see no mirrors.
     #[arg(long, value_name = "NAME", value_parser = one_of(&FirstPass::NAMES))]
     pub first_pass: Option<FirstPass>,
 

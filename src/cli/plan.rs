@@ -35,7 +35,7 @@ pub(super) struct Plan {
 }
 
 /// What of it connections by way of smooth surfaces find.
-const FOLLOWED: &str = "but for what a rectangle, disk, cube or sphere sends on by itself, at up to 3 points (--soften 0.01 reaches it by dielectric and conductor, with a bias)";
+const FOLLOWED: &str = "but for what a rectangle, disk, cube, sphere or cylinder sends on by itself, at up to 3 points (--soften 0.01 reaches it by dielectric and conductor, with a bias)";
 
 impl Plan {
     /// That of a render of `setup` by `settings`, as a pilot has `chosen` if there was one.

@@ -11,9 +11,9 @@ use crate::{
     },
     math::{Bounds, Frame, Spectrum, SpectrumExt, Vec3, vec3, warp},
     medium::MediumIndex,
-    phase::PhaseModel as _,
+    phase::{Deflection, PhaseModel as _},
     sampling::{Stream, stream::Purpose},
-    scene::{Scene, lights::Light},
+    scene::{Scene, lights::Light, media::Boundary},
     shape::SurfacePoint,
     transport::{Arrival, Event, Interaction, profiles::Everything},
 };
@@ -232,7 +232,7 @@ fn in_media(scene: &Scene, number: usize) -> Vec<(Point, Sample)> {
 
 /// The box that `medium` is in; none where that is nothing, or has no end.
 fn extent(scene: &Scene, medium: MediumIndex) -> Option<Bounds> {
-    let of = |side: fn(&crate::scene::media::Boundary) -> Option<MediumIndex>| {
+    let of = |side: fn(&Boundary) -> Option<MediumIndex>| {
         let surfaces = scene.surfaces.iter().zip(scene.geometry.shapes());
         surfaces.filter(move |(surface, _)| side(&surface.boundary) == Some(medium))
     };
@@ -296,11 +296,11 @@ fn phases(scene: &Scene) -> Vec<(Bins, Arc<[Spectrum]>)> {
         .par_iter()
         .map(|medium| {
             let looks = [Vec3::Z, Vec3::X, -Vec3::Z];
-            let pdf = |after: Vec3| medium.phase.pdf_sr(crate::phase::Deflection::between(Vec3::Z, after));
+            let pdf = |after: Vec3| medium.phase.pdf_sr(Deflection::between(Vec3::Z, after));
             let is_even = looks.into_iter().all(|after| (pdf(after) / warp::SPHERE_PDF - 1.0).abs() < 1e-3);
             let bins = Bins::Equal(if is_even { 1 } else { BINS });
             let pdf = |incoming: Vec3, outgoing: Vec3| {
-                Spectrum::splat(medium.phase.pdf_sr(crate::phase::Deflection::between(-incoming, outgoing)))
+                Spectrum::splat(medium.phase.pdf_sr(Deflection::between(-incoming, outgoing)))
             };
             let mut all = matrix(bins, pdf);
             conserve(bins, &mut all);

@@ -5,7 +5,7 @@ use crate::{
     emitter::Kind,
     guide::distribution::Distribution,
     sampling::{Stream, stream::Purpose},
-    scene::Scene,
+    scene::{Scene, lights::Light},
     settings::options::Sky,
 };
 use rayon::prelude::*;
@@ -15,10 +15,13 @@ const SAMPLES: u64 = 4;
 /// Of their random numbers.
 const SEED: u64 = 0x6c61_6d70_7300;
 
+fn is_lamp(light: &Light) -> bool {
+    !matches!(light.emitter.kind, Kind::Surface(_) | Kind::Medium(_))
+}
+
 /// The light that comes to each element.
 pub(super) fn light(scene: &Scene, elements: &Elements) -> Vec<Distribution> {
-    let is_lamp = |kind: &Kind| !matches!(kind, Kind::Surface(_) | Kind::Medium(_));
-    let has_lamps = scene.lights.all.iter().any(|light| is_lamp(&light.emitter.kind));
+    let has_lamps = scene.lights.all.iter().any(is_lamp);
     let lit = |(element, node): (usize, &u32)| {
         let mut all = Distribution::dark(elements.all[element].source.bins);
         let points = elements.points(*node);
@@ -38,9 +41,7 @@ pub(super) fn light(scene: &Scene, elements: &Elements) -> Vec<Distribution> {
 fn receive(scene: &Scene, point: &Point, all: &mut Distribution, of: f32, stream: &mut Stream) {
     let position = point.interaction.position();
     let found = scene.lights.sample_emitter(&scene.geometry, position, Sky::NextEvent, stream);
-    let Some(sample) = found.filter(|sample| {
-        !matches!(scene.lights.all[sample.light as usize].emitter.kind, Kind::Surface(_) | Kind::Medium(_))
-    }) else {
+    let Some(sample) = found.filter(|sample| is_lamp(&scene.lights.all[sample.light as usize])) else {
         return;
     };
     if let Some((towards, part)) = point.line_to_light(scene, &sample.point, stream) {

@@ -1,6 +1,7 @@
 //! Radiance clustering (P03T sec. 4.2): links between elements and clusters, refined where much light goes, carry light until no more comes.
 
 use super::{
+    balance,
     elements::{Element, Elements},
     lamps,
     oracle::{self, Pair},
@@ -12,10 +13,9 @@ use crate::{
         hierarchy::Node,
         links::{Aim, Aims},
     },
-    math::{Channels as _, Frame, Spectrum, SpectrumExt, Vec3, measure, warp},
+    math::{Spectrum, SpectrumExt, Vec3, measure},
     sampling::{Stream, stream::Purpose},
     scene::Scene,
-    transport::{profiles::Everything, sample_free_flight},
 };
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -34,6 +34,8 @@ const FOLLOWED: usize = 64;
 const LEAST_APART: f32 = 0.1;
 /// Part of all power that one more bounce brings, below which no more is to come.
 const SETTLED: f32 = 1e-3;
+/// How often light is carried, at most.
+const MOST_BOUNCES: u32 = 64;
 /// Of the random numbers of lines.
 const SEED: u64 = 0x6c69_6e6b_7300;
 
@@ -129,7 +131,7 @@ fn linked<'a>(
     most_bounces: u32,
     number: usize,
 ) -> (State<'a>, Vec<Vec<Link>>) {
-    let mut state = State::new(scene, elements, most_bounces);
+    let mut state = State::new(scene, elements);
     let mut links = Vec::new();
     for round in (0..ROUNDS).rev() {
         links = state.links(scene, number >> (2 * round));
@@ -139,16 +141,14 @@ fn linked<'a>(
 }
 
 impl<'a> State<'a> {
-    fn new(scene: &Scene, elements: &'a Elements, most_bounces: u32) -> Self {
+    fn new(scene: &Scene, elements: &'a Elements) -> Self {
         let lit = lamps::light(scene, elements);
-        let scattered = lit.iter().zip(&elements.all).map(|(lit, element)| match most_bounces {
-            0 => Distribution::dark(lit.bins),
-            _ => element.scatter(lit),
-        });
-        let direct: Vec<_> = scattered.collect();
+        let direct: Vec<_> =
+            lit.iter().zip(&elements.all).map(|(lit, element)| element.scatter(lit)).collect();
         let (values, sent, power) = (direct.clone(), Vec::new(), Vec::new());
-        let around =
-            |(node, element): (&u32, &Element)| surrounded(scene, elements, *node, element.source.bins);
+        let around = |(node, element): (&u32, &Element)| {
+            balance::surrounded(scene, elements, *node, element.source.bins)
+        };
         let surrounded = elements.hierarchy.elements.par_iter().zip(&elements.all).map(around).collect();
         let mut state = Self { elements, direct, values, emits: 1.0, sent, power, surrounded };
         state.pull();
@@ -192,14 +192,17 @@ impl<'a> State<'a> {
     /// Carries light until no more comes, or it is scattered `most` times.
     fn settle(&mut self, links: &[Vec<Link>], most: u32) {
         let balance = self.balance(links);
-        let mut all = self.direct.clone();
+        let mut all: Vec<_> = self.direct.iter().map(|direct| Distribution::dark(direct.bins)).collect();
         self.values.clone_from(&all);
         let mut before = f32::INFINITY;
-        for _ in 0..most.min(MOST_BOUNCES) {
+        for bounce in 0..most.min(MOST_BOUNCES) {
             self.pull();
             let mut more = self.carry(links, &balance);
-            // After the first time light that elements emit has been carried.
-            self.emits = 0.0;
+            if bounce == 0 {
+                // The light of emitting elements and that of lamps arrive for the first time.
+                more.iter_mut().zip(&self.direct).for_each(|(more, direct)| more.add(direct));
+                self.emits = 0.0;
+            }
             let mut power = self.elements.power(&more);
             // Light does not grow; where links multiply it, they are too few for how it is scattered.
             if power > before {
@@ -248,20 +251,7 @@ impl<'a> State<'a> {
         self.pull();
         let came: Vec<Spectrum> = self.incoming(links).iter().map(Distribution::sum).collect();
         (self.values, self.emits) = (values, emits);
-        let hierarchy = &self.elements.hierarchy;
-        let around = |node: u32| hierarchy.upwards(node).nth(AROUND).unwrap_or(node);
-        let factor = |(element, node): (usize, &u32)| {
-            let own = hierarchy.nodes[around(*node) as usize].elements.clone();
-            let own = own.start as usize..own.end as usize;
-            let sum = |of: &[Spectrum]| of[own.clone()].iter().copied().sum::<Spectrum>();
-            let factor = balanced(sum(&came), sum(&self.surrounded));
-            factor.min(Spectrum::select(
-                came[element].cmpgt(Spectrum::ZERO),
-                MOST * self.surrounded[element] / came[element],
-                Spectrum::ONE,
-            ))
-        };
-        hierarchy.elements.iter().enumerate().map(factor).collect()
+        balance::factors(&self.elements.hierarchy, &came, &self.surrounded)
     }
 
     /// What elements scatter of what links carry.
@@ -310,45 +300,4 @@ impl<'a> State<'a> {
         };
         facing.iter().filter_map(line).collect()
     }
-}
-
-/// How often light is carried, at most.
-const MOST_BOUNCES: u32 = 64;
-/// Lines that say what is around an element, on each side.
-const SURROUNDED: u64 = 64;
-/// What comes by links, over what should, from which on that is no noise of lines.
-const TOO_MUCH: f32 = 1.25;
-
-/// Levels above an element at which what comes by links is compared with what should: there are lines enough.
-const AROUND: usize = 4;
-/// What comes to a single element, over what should, at most.
-const MOST: f32 = 2.0;
-
-/// What light that has come is to be multiplied with, for it to be no more than is due.
-fn balanced(came: Spectrum, due: Spectrum) -> Spectrum {
-    Spectrum::select(came.cmpgt(TOO_MUCH * due), due / came, Spectrum::ONE)
-}
-
-/// What would come to an element if all had the radiance 1. Lines that leave it by the cosine, or evenly, say so.
-fn surrounded(scene: &Scene, elements: &Elements, node: u32, bins: Bins) -> Spectrum {
-    let mut all = Spectrum::ZERO;
-    let sides: &[f32] = if matches!(bins, Bins::Sides(_)) { &[1.0, -1.0] } else { &[1.0] };
-    for side in sides {
-        for line in 0..SURROUNDED {
-            let mut stream = Stream::sobol(SEED, u64::from(node), line, Purpose::Pilot);
-            let u = stream.square();
-            let point = elements.pick(node, stream.uniform_precisely());
-            let direction = match point.interaction.normal().filter(|_| sides.len() > 1) {
-                Some(normal) => Frame::around(*side * normal).to_world(warp::to_cosine_hemisphere(u)),
-                None => warp::to_sphere(u),
-            };
-            let ahead = point.ahead(scene, direction);
-            let flight =
-                sample_free_flight::<Everything>(ahead, line as usize % 3, &mut stream, &mut |_, _| ());
-            if flight.interaction.is_some_and(|met| met.is_connectible(scene)) {
-                all += flight.state.ratio.to_spectrum() * flight.state.tint;
-            }
-        }
-    }
-    all * (bins.angle() * bins.count() as f32 / (SURROUNDED as usize * sides.len()) as f32)
 }

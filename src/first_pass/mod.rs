@@ -2,6 +2,7 @@
 //! ([`mod@links`], sec. 4.2), or particles do ([`particles`], sec. 4.3). The elements, what lamps bring to them directly, and how they scatter
 //! are the same.
 
+mod balance;
 mod elements;
 mod lamps;
 mod links;

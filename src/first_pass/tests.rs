@@ -138,6 +138,25 @@ fn both_methods_find_the_same() {
     }
 }
 
+/// Light of a lamp without a surface that is scattered once is the same by both: no link and no particle carries it.
+#[test]
+fn lamps_count_as_one_bounce() {
+    let scene = scene(
+        r#""floor": {"type": "rectangle", "bsdf": {"type": "diffuse", "reflectance": 0.5}},
+            "wall": {"type": "rectangle", "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 90}, {"type": "translate", "value": [-1, 0, 1]}],
+                "bsdf": {"type": "diffuse", "reflectance": 0.5}},
+            "lamp": {"type": "point", "position": [0.5, 0.2, 1.5], "intensity": 2}"#,
+    );
+    let elements = Elements::of(&scene, 256);
+    let solved = |bounces| {
+        let by_links = links::solve(&scene, &elements, bounces, 1 << 12);
+        let by_particles = particles::solve(&scene, &elements, bounces, 1 << 14);
+        [by_links, by_particles].map(|values| elements.power(&values))
+    };
+    let ([once, by_particles], [twice, _]) = (solved(1), solved(2));
+    assert!(once > 0.0 && once == by_particles && twice > 1.02 * once, "{once} {by_particles} {twice}");
+}
+
 /// The same light, however many threads there are.
 #[test]
 fn threads_change_nothing() {

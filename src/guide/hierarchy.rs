@@ -1,10 +1,10 @@
 //! Elements of a scene in one hierarchy (P03T ch. 4): leaves of surfaces that face one way and of media, found by position, and the
 //! clusters above them.
 
-use super::places::Places;
+use super::places::{Places, Valued};
 use crate::{
     math::{Bounds, Spectrum, Vec3},
-    sampling::{Cells, cells::Keyed},
+    sampling::Cells,
 };
 use std::ops::Range;
 
@@ -50,25 +50,6 @@ pub struct Hierarchy {
     pub elements: Vec<u32>,
 }
 
-/// A point, and by what its element is looked up.
-struct Known<const D: usize> {
-    key: [f32; D],
-    value: f32,
-    index: u32,
-}
-
-impl<const D: usize> Keyed<D> for Known<D> {
-    fn key(&self) -> [f32; D] {
-        self.key
-    }
-    fn weight(&self) -> f32 {
-        1.0
-    }
-    fn value(&self) -> Option<f32> {
-        Some(self.value)
-    }
-}
-
 impl Hierarchy {
     /// Of `samples`, with half of `per_element` of them in each element at least; and the order in which they stand for nodes.
     pub fn of(samples: &[Sample], per_element: f64) -> (Self, Vec<u32>) {
@@ -77,10 +58,10 @@ impl Hierarchy {
         let known = || samples.iter().zip(0..);
         let of_surfaces = known().filter_map(|(sample, index)| {
             let key = places.facing(sample.position, sample.normal?);
-            Some(Known { key, value: sample.value, index })
+            Some(Valued { key, value: sample.value, index })
         });
         let of_media = known().filter(|(sample, _)| sample.normal.is_none());
-        let of_media = of_media.map(|(sample, index)| Known {
+        let of_media = of_media.map(|(sample, index)| Valued {
             key: places.at(sample.position),
             value: sample.value,
             index,
@@ -144,7 +125,7 @@ impl Hierarchy {
 const LEVELS: u32 = 20;
 
 /// Adds an element of points to `order`, which ends in it where `elements` says; its index.
-fn add<const D: usize>(order: &mut Vec<u32>, elements: &mut Vec<Range<u32>>, own: Vec<Known<D>>) -> u32 {
+fn add<const D: usize>(order: &mut Vec<u32>, elements: &mut Vec<Range<u32>>, own: Vec<Valued<D>>) -> u32 {
     let first = order.len() as u32;
     order.extend(own.iter().map(|one| one.index));
     elements.push(first..order.len() as u32);

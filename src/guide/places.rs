@@ -1,6 +1,6 @@
 //! Places, as cells are looked up by them: whatever the units and the extent of the scene.
 
-use crate::math::Vec3;
+use crate::{math::Vec3, sampling::cells::Keyed};
 
 /// How far apart opposite directions are taken to be, over the extent of the scene: cells hold surfaces that face one way before
 /// they hold such that lie close together.
@@ -34,5 +34,24 @@ impl Places {
     pub(super) fn facing(&self, position: Vec3, direction: Vec3) -> [f32; 6] {
         let ([x, y, z], [i, j, k]) = (self.at(position), (0.5 * OPPOSITE * direction).to_array());
         [x, y, z, i, j, k]
+    }
+}
+
+/// One of many, by its index: what its cell is looked up by, and the value at whose changes cells end.
+pub(super) struct Valued<const D: usize> {
+    pub key: [f32; D],
+    pub value: f32,
+    pub index: u32,
+}
+
+impl<const D: usize> Keyed<D> for Valued<D> {
+    fn key(&self) -> [f32; D] {
+        self.key
+    }
+    fn weight(&self) -> f32 {
+        1.0
+    }
+    fn value(&self) -> Option<f32> {
+        Some(self.value)
     }
 }

@@ -2,10 +2,10 @@
 //! (after P03T sec. 5.3). It is the mean over cells: of surfaces that face one way, and of media as they are seen from one way, so
 //! far as they scatter forwards or backwards.
 
-use super::places::Places;
+use super::places::{Places, Valued};
 use crate::{
     math::{Spectrum, SpectrumExt, Vec3},
-    sampling::{Cells, cells::Keyed},
+    sampling::Cells,
 };
 use rayon::prelude::*;
 
@@ -72,26 +72,6 @@ impl Look {
     }
 }
 
-/// A look with what its cell is found by.
-struct Known {
-    key: [f32; 6],
-    value: f32,
-    index: u32,
-}
-
-impl Keyed<6> for Known {
-    fn key(&self) -> [f32; 6] {
-        self.key
-    }
-    fn weight(&self) -> f32 {
-        1.0
-    }
-    /// Where light ends at a wall, so do cells.
-    fn value(&self) -> Option<f32> {
-        Some(self.value)
-    }
-}
-
 /// What was seen everywhere.
 #[derive(Clone, Debug)]
 pub struct Radiance {
@@ -120,7 +100,7 @@ impl Radiance {
         let mut cells = |is_surface| {
             let own = looks.iter().zip(shown).enumerate();
             let own = own.filter(|(_, (look, _))| look.is_whole && look.seen.is_surface == is_surface);
-            let known = own.map(|(index, (look, shown))| Known {
+            let known = own.map(|(index, (look, shown))| Valued {
                 key: look.seen.key(&places),
                 value: shown.luminance().max(0.0).sqrt(),
                 index: index as u32,
