@@ -1,63 +1,110 @@
-//! How much light links should bring where all elements are as bright. More than that would multiply for ever between neighbours in
-//! thick media.
+//! How much light links should bring. Lines of an element tell what part of its light meets anything; as much is to arrive, and where all
+//! elements are as bright, each is to get as much as its lines find around it.
 
-use super::elements::Elements;
+use super::{elements::Elements, scattering::Element};
 use crate::{
-    guide::{distribution::Bins, hierarchy::Hierarchy},
-    math::{Channels as _, Frame, Spectrum, warp},
+    guide::{
+        distribution::{Bins, Distribution},
+        hierarchy::Hierarchy,
+    },
+    math::{Channels as _, Spectrum, Vec3},
     sampling::{Stream, stream::Purpose},
     scene::Scene,
     transport::{profiles::Everything, sample_free_flight},
 };
+use rayon::prelude::*;
 
-/// Lines that say what is around an element, on each side.
-const SURROUNDED: u64 = 64;
-/// What comes by links, over what should, from which on that is no noise of lines.
-const TOO_MUCH: f32 = 1.25;
+/// Lines by which an element looks around.
+const LINES: usize = 128;
 /// Levels above an element at which what comes by links is compared with what should: there are lines enough.
 const AROUND: usize = 4;
-/// What comes to a single element, over what should, at most.
+/// What comes by links that are not between neighbours, over what should, from which on that is no noise of lines.
+const TOO_MUCH: f32 = 1.25;
+/// What light of neighbours is multiplied with, at most: where their few lines found less, forward scattering would go in circles.
+const MOST_NEAR: f32 = 8.0;
+/// What comes to a single element over what should, at most.
 const MOST: f32 = 2.0;
 /// Of the random numbers of lines.
-const SEED: u64 = 0x6c69_6e6b_7300;
+const SEED: u64 = 0x6261_6c61_6e63_6500;
 
-/// What light that comes to each element is to be multiplied with, where so much `came` by links and so much was `due`.
-pub(super) fn factors(hierarchy: &Hierarchy, came: &[Spectrum], due: &[Spectrum]) -> Vec<Spectrum> {
+/// The part of the light of each element that meets something, of what it sends into each bin.
+pub(super) fn meets(scene: &Scene, elements: &Elements) -> Vec<Distribution> {
+    let of = |(node, element): (&u32, &Element)| {
+        let mut part = Distribution::dark(element.source.bins);
+        let each = LINES.div_ceil(part.values.len());
+        for (bin, value) in part.values.iter_mut().enumerate() {
+            let mut stream = Stream::new(SEED, u64::from(*node), bin as u64, Purpose::Pilot);
+            let line = |line| met(scene, elements, *node, (element.source.bins, bin), line, &mut stream);
+            *value = (0..each).map(line).sum::<Spectrum>() / each as f32;
+        }
+        part
+    };
+    elements.hierarchy.elements.par_iter().zip(&elements.all).map(of).collect()
+}
+
+/// What is left of 1 where it meets something, along a line of a `node` into a bin.
+fn met(
+    scene: &Scene,
+    elements: &Elements,
+    node: u32,
+    (bins, bin): (Bins, usize),
+    line: usize,
+    stream: &mut Stream,
+) -> Spectrum {
+    let point = elements.pick(node, stream.uniform_precisely());
+    let normal = point.interaction.normal().unwrap_or(Vec3::Z);
+    let direction = bins.leave(bin, normal, stream.square());
+    if !point.is_live(direction) {
+        return Spectrum::ZERO;
+    }
+    let ahead = point.ahead(scene, direction);
+    let flight = sample_free_flight::<Everything>(ahead, line % 3, stream, &mut |_, _| ());
+    let arrives = flight.interaction.is_some_and(|met| elements.receives(scene, &met, -direction));
+    if arrives { flight.state.ratio.to_spectrum() * flight.state.tint } else { Spectrum::ZERO }
+}
+
+/// What light that comes to an element is to be multiplied with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Balance {
+    /// By links between neighbours, whose lines say least.
+    near: Spectrum,
+    /// By all others.
+    far: Spectrum,
+}
+
+impl Balance {
+    /// Of a link.
+    #[inline]
+    pub(super) fn of(&self, is_near: bool) -> Spectrum {
+        if is_near { self.near } else { self.far }
+    }
+}
+
+/// Those of all elements, where so much comes by links between `[neighbours, others]` and so much is `due`: neighbours make up for what
+/// is missing or too much.
+pub(super) fn balances(
+    hierarchy: &Hierarchy,
+    [near, far]: [&[Spectrum]; 2],
+    due: &[Spectrum],
+) -> Vec<Balance> {
     let around = |node: u32| hierarchy.upwards(node).nth(AROUND).unwrap_or(node);
-    let factor = |(element, node): (usize, &u32)| {
+    let balance = |(element, node): (usize, &u32)| {
         let own = hierarchy.nodes[around(*node) as usize].elements.clone();
         let own = own.start as usize..own.end as usize;
-        let sum = |of: &[Spectrum]| of[own.clone()].iter().copied().sum::<Spectrum>();
-        within(sum(came), sum(due), TOO_MUCH, 1.0).min(within(came[element], due[element], 0.0, MOST))
+        let [due_there, near_there, far_there]: [Spectrum; 3] =
+            [due, near, far].map(|of| of[own.clone()].iter().copied().sum());
+        let missing = (due_there - far_there).max(Spectrum::ZERO);
+        let near_by = over(missing, near_there).min(Spectrum::splat(MOST_NEAR));
+        let far_by =
+            Spectrum::select(far_there.cmpgt(TOO_MUCH * due_there), due_there / far_there, Spectrum::ONE);
+        let all = near[element] * near_by + far[element] * far_by;
+        let within = (MOST * over(due[element], all)).min(Spectrum::ONE);
+        Balance { near: near_by * within, far: far_by * within }
     };
-    hierarchy.elements.iter().enumerate().map(factor).collect()
+    hierarchy.elements.iter().enumerate().map(balance).collect()
 }
 
-/// What takes light that `came` to so many times what is `due`, if it is more than so many times that; else 1.
-fn within(came: Spectrum, due: Spectrum, allowed: f32, to: f32) -> Spectrum {
-    Spectrum::select(came.cmpgt(allowed * due), to * due / came, Spectrum::ONE)
-}
-
-/// What would come to an element if all had the radiance 1. Lines that leave it by the cosine, or evenly, say so.
-pub(super) fn surrounded(scene: &Scene, elements: &Elements, node: u32, bins: Bins) -> Spectrum {
-    let mut all = Spectrum::ZERO;
-    let sides: &[f32] = if matches!(bins, Bins::Sides(_)) { &[1.0, -1.0] } else { &[1.0] };
-    for side in sides {
-        for line in 0..SURROUNDED {
-            let mut stream = Stream::sobol(SEED, u64::from(node), line, Purpose::Pilot);
-            let u = stream.square();
-            let point = elements.pick(node, stream.uniform_precisely());
-            let direction = match point.interaction.normal().filter(|_| sides.len() > 1) {
-                Some(normal) => Frame::around(*side * normal).to_world(warp::to_cosine_hemisphere(u)),
-                None => warp::to_sphere(u),
-            };
-            let ahead = point.ahead(scene, direction);
-            let flight =
-                sample_free_flight::<Everything>(ahead, line as usize % 3, &mut stream, &mut |_, _| ());
-            if flight.interaction.is_some_and(|met| met.is_connectible(scene)) {
-                all += flight.state.ratio.to_spectrum() * flight.state.tint;
-            }
-        }
-    }
-    all * (bins.angle() * bins.count() as f32 / (SURROUNDED as usize * sides.len()) as f32)
+/// `a` over `b`; 1 where that is nothing.
+pub(super) fn over(a: Spectrum, b: Spectrum) -> Spectrum {
+    Spectrum::select(b.cmpgt(Spectrum::ZERO), a / b, Spectrum::ONE)
 }

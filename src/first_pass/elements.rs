@@ -1,24 +1,25 @@
 //! The elements of a scene: points of its surfaces and media, and how each element reflects, scatters and emits.
 
-use super::point::Point;
+use super::{
+    point::Point,
+    scattering::{self, BINS, Element},
+};
 use crate::{
-    bsdf::{BsdfModel as _, Transport},
+    bsdf::BsdfModel as _,
     emitter::{Kind, SurfaceModel as _},
     guide::{
         distribution::{Bins, Distribution},
         hierarchy::{Hierarchy, Node, Sample},
         links::Aim,
     },
-    math::{Bounds, Frame, Spectrum, SpectrumExt, Vec3, vec3, warp},
+    math::{Bounds, Frame, Spectrum, SpectrumExt, Vec3, vec3},
     medium::MediumIndex,
-    phase::{Deflection, PhaseModel as _},
     sampling::{Stream, stream::Purpose},
     scene::{Scene, lights::Light, media::Boundary},
     shape::SurfacePoint,
-    transport::{Arrival, Event, Interaction, profiles::Everything},
+    transport::{Interaction, profiles::Everything},
 };
 use rayon::prelude::*;
-use std::sync::Arc;
 
 /// Of the random numbers that choose points.
 const SEED: u64 = 0x656c_656d_656e_7473;
@@ -26,8 +27,6 @@ const SEED: u64 = 0x656c_656d_656e_7473;
 const PER_ELEMENT: usize = 32;
 /// Points in a medium's box for each that stands for a part of it: of those, more are taken where the medium is dense.
 const CANDIDATES: usize = 2;
-/// Bins along each edge of the square of all directions, where elements look different from everywhere.
-const BINS: u32 = 8;
 /// Extinction of what emits without (1/m).
 const LEAST_EXTINCTION: f32 = 1e-6;
 /// Length of the mean normal from which on an element faces one way.
@@ -36,11 +35,8 @@ const FLAT: f32 = 0.98;
 const THICKNESS: f32 = 0.01;
 /// How much larger boxes are than those around points.
 const WIDENED: f32 = 1.2;
-/// The least |cos| at which light comes to an element.
-const GRAZING: f32 = 0.1;
-/// Points of an element by which it scatters.
-const LOOKED_AT: usize = 4;
-
+/// Places in a medium belong to an element that is no further away than this part of its radius.
+const REACH: f32 = 4.0;
 /// All of them, and the points that stand for them.
 pub(super) struct Elements {
     pub hierarchy: Hierarchy,
@@ -53,30 +49,6 @@ pub(super) struct Elements {
     pub bins: Vec<Bins>,
 }
 
-/// How an element of surfaces or of a medium scatters.
-pub(super) struct Element {
-    /// What it emits: radiance of a surface, and of a medium what is emitted for each collision (W/(m^2 sr)).
-    pub source: Distribution,
-    /// See [`Distribution::scattered`].
-    scattering: Arc<[Spectrum]>,
-    /// What that is multiplied with.
-    tint: Spectrum,
-    /// Unit, on average; none in a medium.
-    normal: Option<Vec3>,
-}
-
-impl Element {
-    /// |cos| of unit `towards` to a surface; 1 in a medium. Bins are too wide for grazing angles.
-    pub(super) fn cosine(&self, towards: Vec3) -> f32 {
-        self.normal.map_or(1.0, |normal| normal.dot(towards).abs().max(GRAZING))
-    }
-
-    /// What it scatters of what comes.
-    pub(super) fn scatter(&self, incoming: &Distribution) -> Distribution {
-        incoming.scattered(&self.scattering, self.tint)
-    }
-}
-
 impl Elements {
     /// About `number` of surfaces, and as many of media.
     pub(super) fn of(scene: &Scene, number: usize) -> Self {
@@ -85,10 +57,10 @@ impl Elements {
         let samples: Vec<Sample> = known.iter().map(|(_, sample)| *sample).collect();
         let (hierarchy, order) = Hierarchy::of(&samples, PER_ELEMENT as f64);
         let points: Vec<Point> = order.iter().map(|index| known[*index as usize].0).collect();
-        let phases = phases(scene);
+        let phases = scattering::phases(scene);
         let element = |node: &u32| {
             let own = hierarchy.nodes[*node as usize].points.clone();
-            element(scene, &points[own.start as usize..own.end as usize], &phases)
+            Element::of(scene, &points[own.start as usize..own.end as usize], &phases)
         };
         let all: Vec<Element> = hierarchy.elements.par_iter().map(element).collect();
         let bins = bins(&hierarchy, &all);
@@ -140,6 +112,23 @@ impl Elements {
         self.powers(sent).iter().sum()
     }
 
+    /// The element of a place; none beyond all of them: fog that has no end has elements near the scene alone.
+    pub(super) fn at(&self, place: &Interaction) -> Option<u32> {
+        let element = self.hierarchy.element(place.position(), place.normal())?;
+        let node = self.hierarchy.node(element);
+        let within = place.position().distance(node.centre()) <= REACH * node.radius();
+        (within || place.normal().is_some()).then_some(element)
+    }
+
+    /// True if an element gets what comes to a place from unit `towards`.
+    pub(super) fn receives(&self, scene: &Scene, place: &Interaction, towards: Vec3) -> bool {
+        let is_dark = match place {
+            Interaction::Surface(point) => brightness(scene, point, towards) == 0.0,
+            Interaction::Medium(..) => false,
+        };
+        !is_dark && place.is_connectible(scene) && self.at(place).is_some()
+    }
+
     /// The points that stand for a node.
     pub(super) fn points(&self, node: u32) -> &[Point] {
         let own = &self.hierarchy.nodes[node as usize].points;
@@ -189,13 +178,15 @@ fn on_surfaces(scene: &Scene, number: usize) -> Vec<(Point, Sample)> {
     shapes.par_iter().flat_map(of_shape).collect()
 }
 
+/// What a point of a shape reflects or emits towards unit `direction`, as luminance: of even light around.
+fn brightness(scene: &Scene, point: &SurfacePoint, direction: Vec3) -> f32 {
+    let wi = point.shading.to_local(direction);
+    let albedo = scene.at(point, |bsdf, uv| bsdf.albedo(uv, wi));
+    (albedo + emitted(scene, point, direction)).luminance()
+}
+
 fn on_surface(scene: &Scene, point: SurfacePoint, area: f32) -> (Point, Sample) {
-    let of_side = |side: f32| {
-        let wi = point.shading.to_local(side * point.normal);
-        let albedo = scene.at(&point, |bsdf, uv| bsdf.albedo(uv, wi));
-        (albedo + emitted(scene, &point, side * point.normal)).luminance()
-    };
-    let sides = [1.0, -1.0].map(of_side);
+    let sides = [1.0, -1.0].map(|side| brightness(scene, &point, side * point.normal));
     let sample = Sample {
         position: point.position,
         normal: Some(point.normal),
@@ -211,7 +202,7 @@ pub(super) fn kind(amount: f32) -> f32 {
 }
 
 /// Radiance that leaves a point of a shape in unit `direction` (W/(m^2 sr)).
-fn emitted(scene: &Scene, point: &SurfacePoint, direction: Vec3) -> Spectrum {
+pub(super) fn emitted(scene: &Scene, point: &SurfacePoint, direction: Vec3) -> Spectrum {
     let Some(light) = scene.surface(point.shape).emitter else { return Spectrum::ZERO };
     let Kind::Surface(surface) = &scene.lights.all[light as usize].emitter.kind else {
         return Spectrum::ZERO;
@@ -287,124 +278,4 @@ fn in_medium(scene: &Scene, medium: MediumIndex, within: Bounds, number: usize) 
         }
     }
     kept
-}
-
-/// How each medium scatters light between bins, with albedo 1.
-fn phases(scene: &Scene) -> Vec<(Bins, Arc<[Spectrum]>)> {
-    scene
-        .media
-        .par_iter()
-        .map(|medium| {
-            let looks = [Vec3::Z, Vec3::X, -Vec3::Z];
-            let pdf = |after: Vec3| medium.phase.pdf_sr(Deflection::between(Vec3::Z, after));
-            let is_even = looks.into_iter().all(|after| (pdf(after) / warp::SPHERE_PDF - 1.0).abs() < 1e-3);
-            let bins = Bins::Equal(if is_even { 1 } else { BINS });
-            let pdf = |incoming: Vec3, outgoing: Vec3| {
-                Spectrum::splat(medium.phase.pdf_sr(Deflection::between(-incoming, outgoing)))
-            };
-            let mut all = matrix(bins, pdf);
-            conserve(bins, &mut all);
-            (bins, all.into())
-        })
-        .collect()
-}
-
-/// Scattering between all bins: a row of where light comes from for each bin that it goes to, by the means of `value` over directions
-/// of both.
-fn matrix(bins: Bins, value: impl Fn(Vec3, Vec3) -> Spectrum) -> Vec<Spectrum> {
-    const ASIDE: [[f32; 2]; 4] = [[0.2, 0.4], [0.6, 0.2], [0.4, 0.8], [0.8, 0.6]];
-    let of = |bin: usize| ASIDE.map(|at| bins.direction(bin, at));
-    let all: Vec<[Vec3; 4]> = (0..bins.count()).map(of).collect();
-    let mean = |from: &[Vec3; 4], to: &[Vec3; 4]| {
-        let pairs = from.iter().flat_map(|from| to.iter().map(|to| value(*from, *to)));
-        pairs.sum::<Spectrum>() / 16.0
-    };
-    all.iter().flat_map(|to| all.iter().map(|from| mean(from, to)).collect::<Vec<_>>()).collect()
-}
-
-/// Makes light that comes from each bin leave as much, over all directions.
-fn conserve(bins: Bins, matrix: &mut [Spectrum]) {
-    let count = bins.count();
-    let angle = 1.0 / (warp::SPHERE_PDF * count as f32);
-    for from in 0..count {
-        let all: Spectrum = (0..count).map(|to| matrix[to * count + from] * angle).sum();
-        let scale = Spectrum::select(all.cmpgt(Spectrum::ZERO), all.recip(), Spectrum::ZERO);
-        (0..count).for_each(|to| matrix[to * count + from] *= scale);
-    }
-}
-
-fn element(scene: &Scene, points: &[Point], phases: &[(Bins, Arc<[Spectrum]>)]) -> Element {
-    match points[points.len() / 2].interaction {
-        Interaction::Surface(_) => of_surfaces(scene, points),
-        Interaction::Medium(_, found) => of_medium(scene, points, &phases[found.medium.0 as usize]),
-    }
-}
-
-fn of_medium(scene: &Scene, points: &[Point], (bins, scattering): &(Bins, Arc<[Spectrum]>)) -> Element {
-    let [mut all, mut scattered, mut emitted] = [Spectrum::ZERO; 3];
-    for point in points {
-        let Interaction::Medium(position, found) = point.interaction else { continue };
-        let emission = scene.lights.of_medium(found.medium).map(|(_, emission)| emission.at(position));
-        all += found.sigma_t;
-        scattered += found.sigma_t * found.albedo;
-        emitted += emission.unwrap_or_default();
-    }
-    let over = |sum: Spectrum| Spectrum::select(all.cmpgt(Spectrum::ZERO), sum / all, Spectrum::ZERO);
-    let source = Distribution { bins: *bins, values: vec![over(emitted); bins.count()] };
-    Element { source, scattering: scattering.clone(), tint: over(scattered), normal: None }
-}
-
-fn of_surfaces(scene: &Scene, points: &[Point]) -> Element {
-    let own: Vec<&Point> = points.iter().step_by(points.len().div_ceil(LOOKED_AT)).collect();
-    let normal =
-        own.iter().filter_map(|point| point.interaction.normal()).sum::<Vec3>().normalize_or(Vec3::Z);
-    let is_dull = own.iter().all(|point| is_dull(scene, &point.interaction, normal));
-    let bins = if is_dull { Bins::Sides(normal) } else { Bins::Equal(BINS) };
-    let own = if is_dull { own } else { vec![own[0]] };
-    let mean = |value: &dyn Fn(&Interaction) -> Spectrum| {
-        own.iter().map(|point| value(&point.interaction)).sum::<Spectrum>() / own.len() as f32
-    };
-    let scattered = |incoming: Vec3, outgoing: Vec3| {
-        let of = |interaction: &Interaction| {
-            interaction.scatter::<Everything>(scene, outgoing, incoming, Transport::Radiance).value
-        };
-        mean(&of) / if is_dull { normal.dot(incoming).abs().max(f32::MIN_POSITIVE) } else { 1.0 }
-    };
-    let values = (0..bins.count()).map(|bin| {
-        let direction =
-            if is_dull { if bin == 0 { normal } else { -normal } } else { bins.direction(bin, [0.5; 2]) };
-        mean(&|interaction| match interaction {
-            Interaction::Surface(point) => emitted(scene, point, direction),
-            Interaction::Medium(..) => Spectrum::ZERO,
-        })
-    });
-    let source = Distribution { bins, values: values.collect() };
-    let scattering = if is_dull { sides(normal, scattered) } else { matrix(bins, scattered) };
-    Element { source, scattering: scattering.into(), tint: Spectrum::ONE, normal: Some(normal) }
-}
-
-/// The matrix of both sides, by directions well away from mirrors.
-fn sides(normal: Vec3, scattered: impl Fn(Vec3, Vec3) -> Spectrum) -> Vec<Spectrum> {
-    let frame = Frame::around(normal);
-    let at = |x: f32, y: f32, side: f32| frame.to_world(vec3(x, y, side * 0.8));
-    [1.0, -1.0]
-        .into_iter()
-        .flat_map(|to| [1.0, -1.0].map(|from| scattered(at(0.6, 0.0, from), at(0.0, 0.6, to))))
-        .collect()
-}
-
-/// True where it looks about the same from both sides of a `normal`, each.
-fn is_dull(scene: &Scene, interaction: &Interaction, normal: Vec3) -> bool {
-    let frame = Frame::around(normal);
-    [1.0, -1.0].into_iter().all(|side| {
-        let incoming = frame.to_world(vec3(0.6, 0.0, side * 0.8));
-        let arrival = Arrival {
-            medium: MediumIndex::VACUUM,
-            incoming,
-            edges: 1,
-            density: 1.0,
-            throughput: Spectrum::ONE,
-        };
-        !interaction.is_connectible(scene) || Event { interaction, survival: 1.0, arrival }.is_dull(scene)
-    })
 }

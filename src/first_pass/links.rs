@@ -1,8 +1,8 @@
 //! Radiance clustering (P03T sec. 4.2): links between elements and clusters, refined where much light goes, carry light until no more comes.
 
 use super::{
-    balance,
-    elements::{Element, Elements},
+    balance::{self, Balance},
+    elements::Elements,
     lamps,
     oracle::{self, Pair},
     point::Point,
@@ -32,6 +32,8 @@ const TRIES: usize = 16;
 const FOLLOWED: usize = 64;
 /// Points of nodes that a line joins count as far apart as this part of both radii, at least.
 const LEAST_APART: f32 = 0.1;
+/// Nodes are neighbours whose middles are no further apart than this times both radii.
+const NEAR: f32 = 1.0;
 /// Part of all power that one more bounce brings, below which no more is to come.
 const SETTLED: f32 = 1e-3;
 /// How often light is carried, at most.
@@ -54,24 +56,18 @@ struct Link {
     from: Vec3,
     /// That distance (m).
     distance: f32,
+    /// True if its nodes are so large that they may touch.
+    is_near: bool,
 }
 
-/// Light that has come along a line.
-struct Carried<'a> {
-    link: &'a Link,
-    /// Perpendicular irradiance where the line ends (W/m^2).
-    irradiance: Spectrum,
-}
-
-impl Carried<'_> {
-    /// From where it comes to a place in the cluster where the line ends, and what comes: the sender's point is seen from there.
-    fn at(&self, place: Vec3) -> (Vec3, Spectrum) {
-        let Link { from, distance, towards, .. } = *self.link;
-        let Some((direction, _, squared)) = measure::between(place, from) else {
-            return (towards, self.irradiance);
+impl Link {
+    /// The unit direction to the sender from a place in the cluster where the line ends, and how much more comes there than at that end.
+    fn seen_from(&self, place: Vec3) -> (Vec3, f32) {
+        let Some((towards, _, squared)) = measure::between(place, self.from) else {
+            return (self.towards, 1.0);
         };
-        let squared = squared.max(0.25 * distance * distance);
-        (direction, self.irradiance * (distance * distance / squared))
+        let own = self.distance * self.distance;
+        (towards, own / squared.max(0.25 * own))
     }
 }
 
@@ -88,8 +84,8 @@ struct State<'a> {
     sent: Vec<Distribution>,
     /// Power of each node (W), as luminance.
     power: Vec<f32>,
-    /// What would come to each element if all had the radiance 1.
-    surrounded: Vec<Spectrum>,
+    /// The part of what each element sends that meets something.
+    meets: Vec<Distribution>,
 }
 
 /// The radiance that elements scatter.
@@ -114,7 +110,8 @@ pub(super) fn aims(scene: &Scene, elements: &Elements, number: usize) -> Vec<Aim
         let mut chances = BTreeMap::new();
         for link in elements.hierarchy.upwards(*node).flat_map(|node| &links[node as usize]) {
             let cosine = elements.all[index].cosine(link.towards);
-            *chances.entry(link.sender).or_insert(0.0) += state.carried(link).luminance() * cosine;
+            *chances.entry(link.sender).or_insert(0.0) +=
+                state.carried(link, link.towards).luminance() * cosine;
         }
         let aim = |(sender, chance): (u32, f32)| {
             (chance > 0.0).then(|| Aim { probability: chance, ..boxes[sender as usize] })
@@ -146,21 +143,21 @@ impl<'a> State<'a> {
         let direct: Vec<_> =
             lit.iter().zip(&elements.all).map(|(lit, element)| element.scatter(lit)).collect();
         let (values, sent, power) = (direct.clone(), Vec::new(), Vec::new());
-        let around = |(node, element): (&u32, &Element)| {
-            balance::surrounded(scene, elements, *node, element.source.bins)
-        };
-        let surrounded = elements.hierarchy.elements.par_iter().zip(&elements.all).map(around).collect();
-        let mut state = Self { elements, direct, values, emits: 1.0, sent, power, surrounded };
+        let meets = balance::meets(scene, elements);
+        let mut state = Self { elements, direct, values, emits: 1.0, sent, power, meets };
         state.pull();
         state
     }
 
     /// What an element sends: radiance on sides times area, else radiant intensity over directions (W/sr).
     fn sent(&self, node: &Node) -> Distribution {
-        let element = node.elements.start as usize;
-        let (own, source) = (&self.values[element], &self.elements.all[element].source);
-        let sum = |(own, source): (&Spectrum, &Spectrum)| (*own + self.emits * *source) * node.measure;
-        Distribution { bins: own.bins, values: own.values.iter().zip(&source.values).map(sum).collect() }
+        let index = node.elements.start as usize;
+        let (own, element) = (&self.values[index], &self.elements.all[index]);
+        let sum = |bin| {
+            let radiance = own.values[bin] + self.emits * element.source.values[bin];
+            radiance * node.measure * element.cosine_of(bin)
+        };
+        Distribution { bins: own.bins, values: (0..own.values.len()).map(sum).collect() }
     }
 
     /// The light of clusters is that of their parts.
@@ -181,12 +178,12 @@ impl<'a> State<'a> {
         self.sent = all;
     }
 
-    /// What comes by a link (W/m^2), from where.
+    /// What comes by a link where its sender is in unit direction `towards`: perpendicular irradiance (W/m^2).
     #[inline]
-    fn carried(&self, link: &Link) -> Spectrum {
+    fn carried(&self, link: &Link, towards: Vec3) -> Spectrum {
         let sent = &self.sent[link.sender as usize];
         let cosine = if matches!(sent.bins, Bins::Sides(_)) { link.cosine } else { 1.0 };
-        sent.at(-link.towards) * link.part * cosine
+        sent.at(-towards) * link.part * cosine
     }
 
     /// Carries light until no more comes, or it is scattered `most` times.
@@ -221,47 +218,74 @@ impl<'a> State<'a> {
         self.pull();
     }
 
-    /// What comes to each element by `links`.
-    fn incoming(&self, links: &[Vec<Link>]) -> Vec<Distribution> {
+    /// What comes to each element by `links`, times what its balance is for neighbours and others.
+    fn incoming(
+        &self,
+        links: &[Vec<Link>],
+        balance: impl Fn(usize, bool) -> Spectrum + Sync,
+    ) -> Vec<Distribution> {
         let hierarchy = &self.elements.hierarchy;
-        let carried = |link| Carried { link, irradiance: self.carried(link) };
-        let carried: Vec<Vec<Carried<'_>>> =
-            links.par_iter().map(|links| links.iter().map(carried).collect()).collect();
         let receive = |(index, node): (usize, &u32)| {
             let mut incoming = Distribution::dark(self.values[index].bins);
-            for came in &carried[*node as usize] {
-                incoming.receive(came.link.towards, came.irradiance);
-            }
-            // What comes to a cluster is pushed down at once.
+            let mut receive = |link: &Link, towards: Vec3, more: f32| {
+                let balance = balance(index, link.is_near);
+                incoming.receive(towards, self.carried(link, towards) * balance * more);
+            };
+            links[*node as usize].iter().for_each(|link| receive(link, link.towards, 1.0));
+            // What comes to a cluster is pushed down at once. Light that goes one way must not be turned: it is seen from each place.
             let place = hierarchy.nodes[*node as usize].centre();
-            for came in hierarchy.upwards(*node).skip(1).flat_map(|node| &carried[node as usize]) {
-                let (towards, irradiance) = came.at(place);
-                incoming.receive(towards, irradiance);
+            for link in hierarchy.upwards(*node).skip(1).flat_map(|node| &links[node as usize]) {
+                let (towards, more) = link.seen_from(place);
+                receive(link, towards, more);
             }
             incoming
         };
         hierarchy.elements.par_iter().enumerate().map(receive).collect()
     }
 
-    /// What light that comes to each element by `links` is to be multiplied with. If all elements had the same radiance, no more should
-    /// come than lines from each find around it: that would multiply for ever between neighbours in thick media.
-    fn balance(&mut self, links: &[Vec<Link>]) -> Vec<Spectrum> {
+    /// What light that comes to each element by `links` is to be multiplied with. If all elements had the same radiance, as much should
+    /// come as lines from each find around it: more would multiply for ever between neighbours in thick media.
+    fn balance(&mut self, links: &[Vec<Link>]) -> Vec<Balance> {
         let (values, emits) = (self.values.clone(), std::mem::take(&mut self.emits));
         self.values.iter_mut().for_each(|value| value.values.fill(Spectrum::ONE));
         self.pull();
-        let came: Vec<Spectrum> = self.incoming(links).iter().map(Distribution::sum).collect();
+        let [near, far] = [true, false].map(|is_near| -> Vec<Spectrum> {
+            let counts = |_, near| if near == is_near { Spectrum::ONE } else { Spectrum::ZERO };
+            self.incoming(links, counts).iter().map(Distribution::sum).collect()
+        });
         (self.values, self.emits) = (values, emits);
-        balance::factors(&self.elements.hierarchy, &came, &self.surrounded)
+        let due: Vec<Spectrum> = self.meets.iter().map(|meets| meets.sum() * meets.bins.angle()).collect();
+        balance::balances(&self.elements.hierarchy, [&near, &far], &due)
     }
 
-    /// What elements scatter of what links carry.
-    fn carry(&self, links: &[Vec<Link>], balance: &[Spectrum]) -> Vec<Distribution> {
-        let incoming = self.incoming(links);
+    /// What elements scatter of what links carry: of all light that meets something, as much as comes.
+    fn carry(&self, links: &[Vec<Link>], balances: &[Balance]) -> Vec<Distribution> {
+        let incoming = self.incoming(links, |element, is_near| balances[element].of(is_near));
+        let scale = balance::over(self.arriving(), self.arrived(&incoming));
         let scatter = |(index, mut incoming): (usize, Distribution)| {
-            incoming.values.iter_mut().for_each(|value| *value *= balance[index]);
+            incoming.values.iter_mut().for_each(|value| *value *= scale);
             self.elements.all[index].scatter(&incoming)
         };
         incoming.into_par_iter().enumerate().map(scatter).collect()
+    }
+
+    /// The power that elements send to others (W).
+    fn arriving(&self) -> Spectrum {
+        let part = |(node, meets): (&u32, &Distribution)| -> Spectrum {
+            let sent = &self.sent[*node as usize].values;
+            sent.iter().zip(&meets.values).map(|(sent, meets)| *sent * *meets).sum::<Spectrum>()
+                * meets.bins.angle()
+        };
+        self.elements.hierarchy.elements.iter().zip(&self.meets).map(part).sum()
+    }
+
+    /// That which comes to them (W).
+    fn arrived(&self, incoming: &[Distribution]) -> Spectrum {
+        let hierarchy = &self.elements.hierarchy;
+        let received = |(index, incoming): (usize, &Distribution)| {
+            hierarchy.node(index as u32).measure * self.elements.all[index].received(incoming)
+        };
+        incoming.iter().enumerate().map(received).sum()
     }
 
     /// About so many, by the nodes that they lead to.
@@ -280,7 +304,8 @@ impl<'a> State<'a> {
     fn measure(&self, scene: &Scene, &Pair { sender, receiver, .. }: &Pair) -> Vec<Link> {
         let [a, b] = [sender, receiver].map(|node| &self.elements.hierarchy.nodes[node as usize]);
         let is_flat = a.parts.is_none() || matches!(self.elements.bins[sender as usize], Bins::Sides(_));
-        let least = LEAST_APART * (a.radius() + b.radius());
+        let both = a.radius() + b.radius();
+        let (least, is_near) = (LEAST_APART * both, a.centre().distance(b.centre()) < NEAR * both);
         let mut stream = Stream::new(SEED, u64::from(sender), u64::from(receiver), Purpose::Study);
         let mut pair = |_| {
             let [from, to] =
@@ -296,7 +321,7 @@ impl<'a> State<'a> {
             let at = if is_flat { from.interaction.position() } else { a.centre() };
             let distance = at.distance(to.interaction.position()).max(least);
             let part = transmittance / (distance * distance * facing.len() as f32);
-            Some(Link { sender, towards, cosine: from.cosine(towards), part, from: at, distance })
+            Some(Link { sender, towards, cosine: from.cosine(towards), part, from: at, distance, is_near })
         };
         facing.iter().filter_map(line).collect()
     }

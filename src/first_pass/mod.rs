@@ -9,6 +9,7 @@ mod links;
 mod oracle;
 mod particles;
 mod point;
+mod scattering;
 #[cfg(test)]
 mod tests;
 

@@ -22,10 +22,10 @@ pub(super) const LINES: usize = 1 << 20;
 const LEFT: f32 = 1e-3;
 /// All lines, at most: white media hold light for thousands of rounds.
 const MOST_LINES: usize = 1 << 23;
+/// Of the lines that are left, a round takes one in so many at most, so that some are left for the last.
+const AT_ONCE: usize = 8;
 /// Of all power that is sent, what a line may misplace (see [`oracle::error`]).
 const MISPLACED: f32 = 1e-8;
-/// Places in a medium belong to an element that is no further away than this part of its radius.
-const REACH: f32 = 4.0;
 /// Mirrors, panes and lenses that a particle passes, at most.
 const MOST_SPECULAR: u32 = 64;
 /// Of the random numbers of lines.
@@ -52,8 +52,8 @@ pub(super) fn solve(
         let total: f32 = power.iter().sum();
         first = f32::max(first, total);
         let number = (lines as f32 * (total / first.max(f32::MIN_POSITIVE))) as usize;
-        let number = number.max(elements.all.len()).min(MOST_LINES - sent);
-        sent += number;
+        let number = number.min((MOST_LINES - sent) / AT_ONCE).max(elements.all.len());
+        sent = MOST_LINES.min(sent + number);
         let mut lit = deposit(scene, elements, &Sent { unsent, power }, number, round);
         for (lit, direct) in lit.iter_mut().zip(direct.take().into_iter().flatten()) {
             lit.add(&direct);
@@ -62,7 +62,7 @@ pub(super) fn solve(
         all.iter_mut().zip(&unsent).for_each(|(all, more)| all.add(more));
         let left: f32 = elements.power(&unsent);
         first = f32::max(first, left);
-        if left <= LEFT * first || sent == MOST_LINES {
+        if left <= LEFT * first || sent >= MOST_LINES {
             break;
         }
     }
@@ -175,13 +175,7 @@ fn receiver(
     place: &Interaction,
 ) -> Option<u32> {
     let hierarchy = &elements.hierarchy;
-    let own = hierarchy.elements[hierarchy.element(place.position(), place.normal())? as usize];
-    // Fog that has no end has elements near the scene alone: what gets beyond is lost.
-    let node = &hierarchy.nodes[own as usize];
-    let beyond = place.position().distance(node.centre()) > REACH * node.radius();
-    if beyond && place.normal().is_none() {
-        return None;
-    }
+    let own = hierarchy.elements[elements.at(place)? as usize];
     let admits = |node: &u32| oracle::error(sender, &hierarchy.nodes[*node as usize], power) <= misplaced;
     Some(hierarchy.upwards(own).take_while(admits).last().unwrap_or(own))
 }

@@ -2,7 +2,7 @@
 //! add, they are evaluated and sampled; what reflects or scatters is a matrix that takes one to another.
 
 use crate::{
-    math::{Frame, Spectrum, SpectrumExt, Vec3, vec2, warp},
+    math::{Frame, Spectrum, SpectrumExt, Vec2, Vec3, vec2, warp},
     sampling::{Discrete, Stream},
 };
 use std::f32::consts::PI;
@@ -50,6 +50,18 @@ impl Bins {
                 let (x, y) = (bin as u32 % n, bin as u32 / n);
                 warp::to_sphere(vec2(x as f32 + u, y as f32 + v) / n as f32)
             }
+        }
+    }
+
+    /// A unit direction in which even light leaves through the `bin`, for a uniform point of the unit square: by the cosine from a surface of
+    /// unit `normal` that the sides are of, else uniform.
+    pub fn leave(self, bin: usize, normal: Vec3, u: Vec2) -> Vec3 {
+        match self {
+            Self::Sides(_) => {
+                let side = if bin == 0 { normal } else { -normal };
+                Frame::around(side).to_world(warp::to_cosine_hemisphere(u))
+            }
+            Self::Equal(_) => self.direction(bin, [u.x, u.y]),
         }
     }
 
@@ -152,14 +164,7 @@ impl Distribution {
             return None;
         }
         let (bin, probability) = chances.sample_precisely(stream.uniform_precisely());
-        let u = stream.square();
-        let direction = match self.bins {
-            Bins::Sides(_) => {
-                let side = if bin == 0 { normal } else { -normal };
-                Frame::around(side).to_world(warp::to_cosine_hemisphere(u))
-            }
-            Bins::Equal(_) => self.bins.direction(bin, [u.x, u.y]),
-        };
+        let direction = self.bins.leave(bin, normal, stream.square());
         Some((direction, self.bins.angle() / probability as f32))
     }
 }
