@@ -1,4 +1,4 @@
-//! The elements of a scene: points of its surfaces and media, and how each element reflects, scatters and emits.
+//! The elements of a scene: points of its surfaces and media, in one hierarchy.
 
 use super::{
     point::Point,
@@ -37,6 +37,7 @@ const THICKNESS: f32 = 0.01;
 const WIDENED: f32 = 1.2;
 /// Places in a medium belong to an element that is no further away than this part of its radius.
 const REACH: f32 = 4.0;
+
 /// All of them, and the points that stand for them.
 pub(super) struct Elements {
     pub hierarchy: Hierarchy,

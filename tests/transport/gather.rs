@@ -86,7 +86,7 @@ fn furnaces_are_in_balance() {
     }
 }
 
-/// Rough metal keeps as much light as `pt` finds, but for what bins of directions and sides that look the same from everywhere cannot tell.
+/// Rough metal keeps about as much light as `pt` finds. Metal of alpha 0.4 counts as diffuse, and its ball was 3.9 % too dark.
 #[test]
 fn rough_walls_keep_their_light() {
     for alpha in [0.15, 0.4] {
