@@ -1,13 +1,12 @@
-//! How much light links should bring. Lines of an element tell what part of its light meets anything; as much is to arrive, and where all
-//! elements are as bright, each is to get as much as its lines find around it.
+//! How much light links should bring: lines of an element tell what part of its light meets anything.
 
 use super::{elements::Elements, scattering::Element};
 use crate::{
     guide::{
-        distribution::{Bins, Distribution},
+        distribution::{self, Bins, Distribution},
         hierarchy::Hierarchy,
     },
-    math::{Channels as _, Spectrum, Vec3},
+    math::{Channels as _, Spectrum, SpectrumExt as _, Vec3},
     sampling::{Stream, stream::Purpose},
     scene::Scene,
     transport::{profiles::Everything, sample_free_flight},
@@ -16,15 +15,8 @@ use rayon::prelude::*;
 
 /// Lines by which an element looks around.
 const LINES: usize = 128;
-/// Levels above an element at which what comes by links is compared with what should: there are lines enough.
-const AROUND: usize = 4;
-/// What comes by links that are not between neighbours, over what should, from which on that is no noise of lines.
-const TOO_MUCH: f32 = 1.25;
-/// What light of neighbours is multiplied with, at most, as their lines are few. Chosen by hand on four rooms: 2 made dense fog much too
-/// dark; without a limit nothing was worse.
-const MOST_NEAR: f32 = 8.0;
-/// What comes to a single element over what should, at most.
-const MOST: f32 = 2.0;
+/// Relative noise of lines that is small beside what links miss.
+const NOISE: f32 = 0.02;
 /// Of the random numbers of lines.
 const SEED: u64 = 0x6261_6c61_6e63_6500;
 
@@ -64,48 +56,23 @@ fn met(
     if arrives { flight.state.ratio.to_spectrum() * flight.state.tint } else { Spectrum::ZERO }
 }
 
-/// What light that comes to an element is to be multiplied with.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Balance {
-    /// By links between neighbours, whose lines say least.
-    near: Spectrum,
-    /// By all others.
-    far: Spectrum,
-}
-
-impl Balance {
-    /// Of a link.
-    #[inline]
-    pub(super) fn of(&self, is_near: bool) -> Spectrum {
-        if is_near { self.near } else { self.far }
-    }
-}
-
-/// Those of all elements, where so much comes by links between `[neighbours, others]` and so much is `due`: neighbours make up for what
-/// is missing or too much.
-pub(super) fn balances(
-    hierarchy: &Hierarchy,
-    [near, far]: [&[Spectrum]; 2],
-    due: &[Spectrum],
-) -> Vec<Balance> {
-    let around = |node: u32| hierarchy.upwards(node).nth(AROUND).unwrap_or(node);
-    let balance = |(element, node): (usize, &u32)| {
-        let own = hierarchy.nodes[around(*node) as usize].elements.clone();
-        let own = own.start as usize..own.end as usize;
-        let [due_there, near_there, far_there]: [Spectrum; 3] =
-            [due, near, far].map(|of| of[own.clone()].iter().copied().sum());
-        let missing = (due_there - far_there).max(Spectrum::ZERO);
-        let near_by = over(missing, near_there).min(Spectrum::splat(MOST_NEAR));
-        let far_by =
-            Spectrum::select(far_there.cmpgt(TOO_MUCH * due_there), due_there / far_there, Spectrum::ONE);
-        let all = near[element] * near_by + far[element] * far_by;
-        let within = (MOST * over(due[element], all)).min(Spectrum::ONE);
-        Balance { near: near_by * within, far: far_by * within }
+/// What is to come to each element if all are as bright, over what was `found` to come, in the smallest cluster around it whose lines
+/// have little noise: in a closed room, where all of them meet something, that is the element.
+pub(super) fn coming(hierarchy: &Hierarchy, meets: &[Distribution], found: &[Spectrum]) -> Vec<Spectrum> {
+    let due: Vec<Spectrum> = meets.iter().map(|meets| meets.sum() * meets.bins.angle()).collect();
+    let parts: Vec<f32> =
+        meets.iter().map(|meets| meets.sum().luminance() / meets.values.len() as f32).collect();
+    let is_known = |node: &u32| {
+        let own = &parts[hierarchy.nodes[*node as usize].within()];
+        let variance = own.iter().map(|part| part * (1.0 - part).max(0.0)).sum::<f32>() / LINES as f32;
+        variance < (NOISE * own.iter().sum::<f32>()).powi(2)
     };
-    hierarchy.elements.iter().enumerate().map(balance).collect()
-}
-
-/// `a` over `b`; 1 where that is nothing.
-pub(super) fn over(a: Spectrum, b: Spectrum) -> Spectrum {
-    Spectrum::select(b.cmpgt(Spectrum::ZERO), a / b, Spectrum::ONE)
+    let over = |node: &u32| {
+        let around = hierarchy.upwards(*node).take_while(|node| !is_known(node)).last();
+        let around = around.map_or(*node, |node| hierarchy.nodes[node as usize].parent.unwrap_or(node));
+        let own = hierarchy.nodes[around as usize].within();
+        let [due, found]: [Spectrum; 2] = [&due[..], found].map(|of| of[own.clone()].iter().copied().sum());
+        distribution::over(due, found)
+    };
+    hierarchy.elements.par_iter().map(over).collect()
 }

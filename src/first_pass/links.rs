@@ -1,16 +1,16 @@
 //! Radiance clustering (P03T sec. 4.2): links between elements and clusters, refined where much light goes, carry light until no more comes.
 
 use super::{
-    balance::{self, Balance},
+    balance,
     elements::Elements,
     lamps,
     oracle::{self, Pair},
     point::Point,
+    scattering::Element,
 };
 use crate::{
     guide::{
-        distribution::{Bins, Distribution},
-        hierarchy::Node,
+        distribution::{self, Bins, Distribution},
         links::{Aim, Aims},
     },
     math::{Spectrum, SpectrumExt, Vec3, measure},
@@ -32,8 +32,6 @@ const TRIES: usize = 16;
 const FOLLOWED: usize = 64;
 /// Points of nodes that a line joins count as far apart as this part of both radii, at least.
 const LEAST_APART: f32 = 0.1;
-/// Nodes are neighbours whose middles are no further apart than this times both radii.
-const NEAR: f32 = 1.0;
 /// Part of all power that one more bounce brings, below which no more is to come.
 const SETTLED: f32 = 1e-3;
 /// How often light is carried, at most.
@@ -56,11 +54,15 @@ struct Link {
     from: Vec3,
     /// That distance (m).
     distance: f32,
-    /// True if its nodes are so large that they may touch.
-    is_near: bool,
 }
 
 impl Link {
+    /// |cos| that what its sender sends lacks: that of sides.
+    #[inline]
+    fn cosine_for(&self, sent: Bins) -> f32 {
+        if matches!(sent, Bins::Sides(_)) { self.cosine } else { 1.0 }
+    }
+
     /// The unit direction to the sender from a place in the cluster where the line ends, and how much more comes there than at that end.
     fn seen_from(&self, place: Vec3) -> (Vec3, f32) {
         let Some((towards, _, squared)) = measure::between(place, self.from) else {
@@ -86,6 +88,10 @@ struct State<'a> {
     power: Vec<f32>,
     /// The part of what each element sends that meets something.
     meets: Vec<Distribution>,
+    /// What each element sends is multiplied with this: see [`State::balance`].
+    leaving: Vec<Distribution>,
+    /// What comes to each element is multiplied with this.
+    coming: Vec<Spectrum>,
 }
 
 /// The radiance that elements scatter.
@@ -144,29 +150,34 @@ impl<'a> State<'a> {
             lit.iter().zip(&elements.all).map(|(lit, element)| element.scatter(lit)).collect();
         let (values, sent, power) = (direct.clone(), Vec::new(), Vec::new());
         let meets = balance::meets(scene, elements);
-        let mut state = Self { elements, direct, values, emits: 1.0, sent, power, meets };
+        let leaving = meets.iter().map(|meets| Distribution::even(meets.bins)).collect();
+        let coming = vec![Spectrum::ONE; direct.len()];
+        let mut state = Self { elements, direct, values, emits: 1.0, sent, power, meets, leaving, coming };
         state.pull();
         state
     }
 
     /// What an element sends: radiance on sides times area, else radiant intensity over directions (W/sr).
-    fn sent(&self, node: &Node) -> Distribution {
-        let index = node.elements.start as usize;
+    fn sent(&self, index: usize) -> Distribution {
         let (own, element) = (&self.values[index], &self.elements.all[index]);
+        let measure = self.elements.hierarchy.node(index as u32).measure;
         let sum = |bin| {
             let radiance = own.values[bin] + self.emits * element.source.values[bin];
-            radiance * node.measure * element.cosine_of(bin)
+            radiance * measure * element.cosine_of(bin)
         };
         Distribution { bins: own.bins, values: (0..own.values.len()).map(sum).collect() }
     }
 
-    /// The light of clusters is that of their parts.
+    /// The light of clusters is that of their parts, as balanced.
     fn pull(&mut self) {
         let nodes = &self.elements.hierarchy.nodes;
         let mut all: Vec<Distribution> = vec![Distribution::dark(Bins::Equal(1)); nodes.len()];
         for (index, node) in nodes.iter().enumerate().rev() {
             all[index] = match node.parts {
-                None => self.sent(node),
+                None => {
+                    let element = node.elements.start as usize;
+                    self.sent(element).times(&self.leaving[element])
+                }
                 Some(parts) => {
                     let mut sum = Distribution::dark(self.elements.bins[index]);
                     parts.iter().for_each(|part| sum.gather(&all[*part as usize]));
@@ -182,35 +193,25 @@ impl<'a> State<'a> {
     #[inline]
     fn carried(&self, link: &Link, towards: Vec3) -> Spectrum {
         let sent = &self.sent[link.sender as usize];
-        let cosine = if matches!(sent.bins, Bins::Sides(_)) { link.cosine } else { 1.0 };
-        sent.at(-towards) * link.part * cosine
+        sent.at(-towards) * link.part * link.cosine_for(sent.bins)
     }
 
     /// Carries light until no more comes, or it is scattered `most` times.
     fn settle(&mut self, links: &[Vec<Link>], most: u32) {
-        let balance = self.balance(links);
+        self.balance(links);
         let mut all: Vec<_> = self.direct.iter().map(|direct| Distribution::dark(direct.bins)).collect();
         self.values.clone_from(&all);
-        let mut before = f32::INFINITY;
         for bounce in 0..most.min(MOST_BOUNCES) {
             self.pull();
-            let mut more = self.carry(links, &balance);
+            let mut more = self.carry(links);
             if bounce == 0 {
                 // The light of emitting elements and that of lamps arrive for the first time.
                 more.iter_mut().zip(&self.direct).for_each(|(more, direct)| more.add(direct));
                 self.emits = 0.0;
             }
-            let mut power = self.elements.power(&more);
-            // Light does not grow; where links multiply it, they are too few for how it is scattered.
-            if power > before {
-                let back = before / power;
-                more.iter_mut().flat_map(|more| &mut more.values).for_each(|value| *value *= back);
-                power = before;
-            }
             all.iter_mut().zip(&more).for_each(|(all, more)| all.add(more));
             self.values = more;
-            before = power;
-            if power <= SETTLED * self.elements.power(&all) {
+            if self.elements.power(&self.values) <= SETTLED * self.elements.power(&all) {
                 break;
             }
         }
@@ -218,65 +219,106 @@ impl<'a> State<'a> {
         self.pull();
     }
 
-    /// What comes to each element by `links`, times what its balance is for neighbours and others.
-    fn incoming(
-        &self,
-        links: &[Vec<Link>],
-        balance: impl Fn(usize, bool) -> Spectrum + Sync,
-    ) -> Vec<Distribution> {
+    /// What comes to each element by `links`.
+    fn incoming(&self, links: &[Vec<Link>]) -> Vec<Distribution> {
         let hierarchy = &self.elements.hierarchy;
         let receive = |(index, node): (usize, &u32)| {
             let mut incoming = Distribution::dark(self.values[index].bins);
-            let mut receive = |link: &Link, towards: Vec3, more: f32| {
-                let balance = balance(index, link.is_near);
-                incoming.receive(towards, self.carried(link, towards) * balance * more);
-            };
-            links[*node as usize].iter().for_each(|link| receive(link, link.towards, 1.0));
-            // What comes to a cluster is pushed down at once. Light that goes one way must not be turned: it is seen from each place.
-            let place = hierarchy.nodes[*node as usize].centre();
-            for link in hierarchy.upwards(*node).skip(1).flat_map(|node| &links[node as usize]) {
-                let (towards, more) = link.seen_from(place);
-                receive(link, towards, more);
+            for above in hierarchy.upwards(*node) {
+                for link in &links[above as usize] {
+                    let (towards, more) = self.pushed(link, above, *node);
+                    incoming.receive(towards, self.carried(link, towards) * more);
+                }
             }
-            incoming
+            incoming.scaled(self.coming[index])
         };
         hierarchy.elements.par_iter().enumerate().map(receive).collect()
     }
 
-    /// What light that comes to each element by `links` is to be multiplied with. If all elements had the same radiance, as much should
-    /// come as lines from each find around it: more would multiply for ever between neighbours in thick media.
-    fn balance(&mut self, links: &[Vec<Link>]) -> Vec<Balance> {
-        let (values, emits) = (self.values.clone(), std::mem::take(&mut self.emits));
-        self.values.iter_mut().for_each(|value| value.values.fill(Spectrum::ONE));
+    /// The unit direction that a link to `above` brings light from to `node`, which is in it, and how much more comes than at the end of
+    /// its line. What comes to a cluster is pushed down at once. Light that goes one way must not be turned: it is seen from each place.
+    fn pushed(&self, link: &Link, above: u32, node: u32) -> (Vec3, f32) {
+        if above == node {
+            return (link.towards, 1.0);
+        }
+        link.seen_from(self.elements.hierarchy.nodes[node as usize].centre())
+    }
+
+    /// Makes up for links that have too few lines in some directions and too many in others. Of what each element sends into each bin, as much
+    /// arrives as its own lines say: a direction that brought more would keep its light in thick media for ever. If all elements were as bright, as
+    /// much would come to each as its own lines say.
+    fn balance(&mut self, links: &[Vec<Link>]) {
+        self.coming.fill(Spectrum::ONE);
+        self.leaving = self.leaving(links);
+        self.coming = self.coming(links);
+        self.leaving = self.leaving(links);
+    }
+
+    /// What is to leave each element, over what links bring of it.
+    fn leaving(&self, links: &[Vec<Link>]) -> Vec<Distribution> {
+        let (delivered, hierarchy) = (self.delivered(links), &self.elements.hierarchy);
+        let over = |(node, meets): (&u32, &Distribution)| {
+            let mut brought = Distribution::dark(meets.bins);
+            hierarchy.upwards(*node).for_each(|node| brought.part_of(&delivered[node as usize]));
+            let due = meets.clone().scaled(Spectrum::splat(meets.bins.angle()));
+            due.over(&brought)
+        };
+        hierarchy.elements.par_iter().zip(&self.meets).map(over).collect()
+    }
+
+    /// What is to come to each element if all are as bright, over what links bring then.
+    fn coming(&mut self, links: &[Vec<Link>]) -> Vec<Spectrum> {
+        let even = self.meets.iter().map(|meets| Distribution::even(meets.bins)).collect();
+        let (values, emits) = (std::mem::replace(&mut self.values, even), std::mem::take(&mut self.emits));
         self.pull();
-        let [near, far] = [true, false].map(|is_near| -> Vec<Spectrum> {
-            let counts = |_, near| if near == is_near { Spectrum::ONE } else { Spectrum::ZERO };
-            self.incoming(links, counts).iter().map(Distribution::sum).collect()
-        });
+        let incoming = self.incoming(links);
         (self.values, self.emits) = (values, emits);
-        let due: Vec<Spectrum> = self.meets.iter().map(|meets| meets.sum() * meets.bins.angle()).collect();
-        balance::balances(&self.elements.hierarchy, [&near, &far], &due)
+        let found: Vec<Spectrum> = incoming.iter().map(Distribution::sum).collect();
+        balance::coming(&self.elements.hierarchy, &self.meets, &found)
+    }
+
+    /// The power (W) that comes by `links` of a unit of what each node sends into each bin.
+    fn delivered(&self, links: &[Vec<Link>]) -> Vec<Distribution> {
+        let mut of_senders = vec![Vec::new(); links.len()];
+        for (receiver, links) in links.iter().enumerate() {
+            links.iter().for_each(|link| of_senders[link.sender as usize].push((receiver as u32, link)));
+        }
+        let sum = |(bins, links): (&Bins, &Vec<(u32, &Link)>)| {
+            let mut all = Distribution::dark(*bins);
+            links.iter().for_each(|(receiver, link)| self.deliver(link, *receiver, &mut all));
+            all
+        };
+        self.elements.bins.par_iter().zip(&of_senders).map(sum).collect()
+    }
+
+    /// Adds what comes by one link to all elements of its `receiver`.
+    fn deliver(&self, link: &Link, receiver: u32, all: &mut Distribution) {
+        let hierarchy = &self.elements.hierarchy;
+        let unit = link.part * link.cosine_for(all.bins);
+        for element in hierarchy.nodes[receiver as usize].elements.clone() {
+            let (towards, more) = self.pushed(link, receiver, hierarchy.elements[element as usize]);
+            let received = self.elements.all[element as usize].receives(towards) * more;
+            let measure = hierarchy.node(element).measure * self.coming[element as usize];
+            let bin = all.bins.of(-towards);
+            all.values[bin] += unit * measure * received;
+        }
     }
 
     /// What elements scatter of what links carry: of all light that meets something, as much as comes.
-    fn carry(&self, links: &[Vec<Link>], balances: &[Balance]) -> Vec<Distribution> {
-        let incoming = self.incoming(links, |element, is_near| balances[element].of(is_near));
-        let scale = balance::over(self.arriving(), self.arrived(&incoming));
-        let scatter = |(index, mut incoming): (usize, Distribution)| {
-            incoming.values.iter_mut().for_each(|value| *value *= scale);
-            self.elements.all[index].scatter(&incoming)
-        };
-        incoming.into_par_iter().enumerate().map(scatter).collect()
+    fn carry(&self, links: &[Vec<Link>]) -> Vec<Distribution> {
+        let incoming = self.incoming(links);
+        let scale = distribution::over(self.arriving(), self.arrived(&incoming));
+        let scatter =
+            |(element, incoming): (&Element, Distribution)| element.scatter(&incoming.scaled(scale));
+        self.elements.all.par_iter().zip(incoming).map(scatter).collect()
     }
 
     /// The power that elements send to others (W).
     fn arriving(&self) -> Spectrum {
-        let part = |(node, meets): (&u32, &Distribution)| -> Spectrum {
-            let sent = &self.sent[*node as usize].values;
-            sent.iter().zip(&meets.values).map(|(sent, meets)| *sent * *meets).sum::<Spectrum>()
-                * meets.bins.angle()
+        let part = |(element, meets): (usize, &Distribution)| {
+            self.sent(element).times(meets).sum() * meets.bins.angle()
         };
-        self.elements.hierarchy.elements.iter().zip(&self.meets).map(part).sum()
+        self.meets.iter().enumerate().map(part).sum()
     }
 
     /// That which comes to them (W).
@@ -304,8 +346,7 @@ impl<'a> State<'a> {
     fn measure(&self, scene: &Scene, &Pair { sender, receiver, .. }: &Pair) -> Vec<Link> {
         let [a, b] = [sender, receiver].map(|node| &self.elements.hierarchy.nodes[node as usize]);
         let is_flat = a.parts.is_none() || matches!(self.elements.bins[sender as usize], Bins::Sides(_));
-        let both = a.radius() + b.radius();
-        let (least, is_near) = (LEAST_APART * both, a.centre().distance(b.centre()) < NEAR * both);
+        let least = LEAST_APART * (a.radius() + b.radius());
         let mut stream = Stream::new(SEED, u64::from(sender), u64::from(receiver), Purpose::Study);
         let mut pair = |_| {
             let [from, to] =
@@ -321,7 +362,7 @@ impl<'a> State<'a> {
             let at = if is_flat { from.interaction.position() } else { a.centre() };
             let distance = at.distance(to.interaction.position()).max(least);
             let part = transmittance / (distance * distance * facing.len() as f32);
-            Some(Link { sender, towards, cosine: from.cosine(towards), part, from: at, distance, is_near })
+            Some(Link { sender, towards, cosine: from.cosine(towards), part, from: at, distance })
         };
         facing.iter().filter_map(line).collect()
     }

@@ -99,6 +99,29 @@ impl Distribution {
         Self { bins, values: vec![Spectrum::ZERO; bins.count()] }
     }
 
+    /// 1 everywhere.
+    pub fn even(bins: Bins) -> Self {
+        Self { bins, values: vec![Spectrum::ONE; bins.count()] }
+    }
+
+    /// The same, times `scale`.
+    pub fn scaled(mut self, scale: Spectrum) -> Self {
+        self.values.iter_mut().for_each(|value| *value *= scale);
+        self
+    }
+
+    /// The same, multiplied by `other` over the same bins.
+    pub fn times(mut self, other: &Self) -> Self {
+        self.values.iter_mut().zip(&other.values).for_each(|(value, other)| *value *= *other);
+        self
+    }
+
+    /// The same over `other`, over the same bins; 1 where that is nothing.
+    pub fn over(mut self, other: &Self) -> Self {
+        self.values.iter_mut().zip(&other.values).for_each(|(value, other)| *value = over(*value, *other));
+        self
+    }
+
     /// In unit `direction`.
     #[inline]
     pub fn at(&self, direction: Vec3) -> Spectrum {
@@ -116,29 +139,16 @@ impl Distribution {
         self.values.iter_mut().zip(&other.values).for_each(|(value, other)| *value += *other);
     }
 
-    /// Adds what a part of a cluster sends: where both are of sides, or of as many bins, value by value; else the intensity in the middle of
-    /// each bin.
+    /// Adds what a part of a cluster sends: on sides as they face, else the intensity in the middle of each bin.
     pub fn gather(&mut self, part: &Self) {
-        if let (Bins::Sides(own), Bins::Sides(other)) = (self.bins, part.bins) {
-            let turned = usize::from(own.dot(other) < 0.0);
-            (0..2).for_each(|side| self.values[side] += part.values[side ^ turned]);
-        } else if self.bins == part.bins {
-            self.add(part);
-        } else {
-            self.gather_unlike(part);
-        }
+        join(self.bins, part.bins, |bin, of_part, share| self.values[bin] += part.values[of_part] * share);
     }
 
-    /// The same by the middles of bins, with as much power of each of the part's as it has.
-    fn gather_unlike(&mut self, part: &Self) {
-        let middles = (0..self.values.len()).map(|bin| self.bins.direction(bin, [0.5; 2]));
-        let seen: Vec<(usize, f32)> =
-            middles.map(|middle| (part.bins.of(middle), part.bins.cosine(middle))).collect();
-        let mut found = vec![0.0; part.values.len()];
-        seen.iter().for_each(|(bin, cosine)| found[*bin] += cosine * self.bins.angle());
-        for (value, (bin, cosine)) in self.values.iter_mut().zip(seen) {
-            *value += part.values[bin] * (cosine * part.bins.angle() / found[bin]);
-        }
+    /// Adds to each bin of a part the values of a `cluster` that [`Self::gather`] adds that bin to, by the same shares.
+    pub fn part_of(&mut self, cluster: &Self) {
+        join(cluster.bins, self.bins, |bin, of_part, share| {
+            self.values[of_part] += cluster.values[bin] * share
+        });
     }
 
     /// What leaves where this arrives: `scattering` has a row of all bins of light that comes for each bin of light that leaves.
@@ -166,6 +176,30 @@ impl Distribution {
         let (bin, probability) = chances.sample_precisely(stream.uniform_precisely());
         let direction = self.bins.leave(bin, normal, stream.square());
         Some((direction, self.bins.angle() / probability as f32))
+    }
+}
+
+/// `a` over `b`; 1 where that is nothing.
+pub fn over(a: Spectrum, b: Spectrum) -> Spectrum {
+    Spectrum::select(b.cmpgt(Spectrum::ZERO), a / b, Spectrum::ONE)
+}
+
+/// Visits all bins of a cluster and of its part that share light, with the share of the part's that is the cluster's. As much power of each
+/// bin is sent as the part has.
+fn join(cluster: Bins, part: Bins, mut visit: impl FnMut(usize, usize, f32)) {
+    if let (Bins::Sides(own), Bins::Sides(other)) = (cluster, part) {
+        let turned = usize::from(own.dot(other) < 0.0);
+        return (0..2).for_each(|side| visit(side, side ^ turned, 1.0));
+    }
+    if cluster == part {
+        return (0..part.count()).for_each(|bin| visit(bin, bin, 1.0));
+    }
+    let middles = (0..cluster.count()).map(|bin| cluster.direction(bin, [0.5; 2]));
+    let seen: Vec<(usize, f32)> = middles.map(|middle| (part.of(middle), part.cosine(middle))).collect();
+    let mut found = vec![0.0; part.count()];
+    seen.iter().for_each(|(bin, cosine)| found[*bin] += cosine * cluster.angle());
+    for (bin, (of_part, cosine)) in seen.into_iter().enumerate() {
+        visit(bin, of_part, cosine * part.angle() / found[of_part]);
     }
 }
 
@@ -213,5 +247,27 @@ mod tests {
         let mut turned = Distribution::dark(Bins::Sides(-Vec3::Z));
         turned.gather(&own);
         assert!(turned.at(Vec3::Z).x > 1.5 && turned.at(-Vec3::Z) == Spectrum::ZERO);
+    }
+    /// What clusters make of each bin of a part is what the part finds of theirs.
+    #[test]
+    fn parts_of_clusters_are_adjoint_to_gathering() {
+        let normal = Vec3::new(0.6, 0.0, 0.8);
+        let some = |bins: Bins, salt: usize| {
+            let value = |bin| Spectrum::splat(((7 * bin + salt) % 5) as f32);
+            Distribution { bins, values: (0..bins.count()).map(value).collect() }
+        };
+        for bins in [Bins::Sides(normal), Bins::Equal(1), Bins::Equal(4), Bins::Equal(8)] {
+            for cluster in [Bins::Equal(8), Bins::Sides(-normal)] {
+                if matches!((cluster, bins), (Bins::Sides(_), Bins::Equal(_))) {
+                    continue;
+                }
+                let (own, other) = (some(bins, 1), some(cluster, 3));
+                let (mut gathered, mut part) = (Distribution::dark(cluster), Distribution::dark(bins));
+                gathered.gather(&own);
+                part.part_of(&other);
+                let [a, b] = [gathered.times(&other), part.times(&own)].map(|product| product.sum().x);
+                assert!((a / b - 1.0).abs() < 1e-5, "{bins:?} of {cluster:?}: {a}, {b}");
+            }
+        }
     }
 }

@@ -173,6 +173,11 @@ impl Node {
         }
     }
 
+    /// The indices of its elements.
+    pub fn within(&self) -> Range<usize> {
+        self.elements.start as usize..self.elements.end as usize
+    }
+
     /// The middle of its box.
     #[inline]
     pub fn centre(&self) -> Vec3 {
