@@ -7,10 +7,11 @@ import shlex
 import shutil
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 
 import pytest
-
+import tyndall
 from tyndall import program
 from validation.places import PYTHON, ROOT, SCENES
 
@@ -114,6 +115,14 @@ def test_every_command_runs(page: Path, desk: Path) -> None:
         if done.returncode not in ((0, 1) if "validation compare" in line or "--fail-above" in line else (0,)) or "panicked" in done.stderr:
             wrong.append(f"{line}\n  as {smaller(line)}\n  {done.returncode}: {done.stdout[-300:]}{done.stderr[-600:]}")
     assert not wrong, "\n".join(wrong)
+
+
+def test_the_comparison_runs(desk: Path) -> None:
+    block = re.search(r"((?:^    .*\n)*^    import tyndall\n(?:^    .*\n)*)", (SCENES / "manual" / "compare.md").read_text(), re.MULTILINE)
+    assert block and '"my_scene.xml"' in block[1]
+    names: dict[str, object] = {}
+    exec(textwrap.dedent(block[1]).replace('"my_scene.xml"', '"my_scene.xml", seconds=4'), names)
+    assert isinstance(names["found"], tyndall.Comparison)
 
 
 def test_there_are_commands() -> None:
