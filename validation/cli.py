@@ -17,7 +17,7 @@ from validation.places import OUTPUT
 Commands = argparse._SubParsersAction  # argparse gives it no public name
 MEASURES = {
     "efficiency": (efficiency, "Time to equal error against Mitsuba and others of our own, as one number a scene."),
-    "gallery": (gallery, "Renders the scenes of scenes/gallery, and Mitsuba for the same seconds, for the table of scenes/README.md."),
+    "gallery": (gallery, "Renders the scenes of scenes/gallery, and Mitsuba for the same seconds, for the table of scenes/GALLERY.md."),
     "growth": (growth, "How the cost of a sample grows with depth, triangles, voxels, lights, pixels and threads."),
     "bias": (bias, "Bias of ray marching against its step, in a cosine cloud and a noise cloud."),
     "progressive": (progressive, "Progressive pictures against as many pixels on a regular grid, on four scenes."),

@@ -1,5 +1,5 @@
 """The gallery: renders its scenes by their own commands, measures their error, gives Mitsuba the same seconds, and renews the
-table of scenes/README.md."""
+table of scenes/GALLERY.md."""
 
 import argparse
 import json
@@ -26,7 +26,7 @@ from validation.places import OUTPUT, ROOT, SCENES
 FOLDER = SCENES / "gallery"
 ENTRIES = FOLDER / "gallery.json"
 MEASURED = FOLDER / "measured.json"
-README = SCENES / "README.md"
+PAGE = SCENES / "GALLERY.md"
 TABLE = re.compile(r"(?<=<!-- gallery -->\n).*?(?=<!-- end -->)", re.DOTALL)
 PILOT = 16
 """Samples per pixel by which Mitsuba's time is first known,"""
@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> bool:
     if not options.table:
         for entry in entries:
             renew(entry, options.threads)
-    write_text(README, with_table(README.read_text()))
+    write_text(PAGE, with_table(PAGE.read_text()))
     return True
 
 
@@ -248,20 +248,20 @@ def warnings(entry: Entry) -> list[str]:
 
 def is_current() -> bool:
     """Whether the table says what is known; says if not."""
-    text = README.read_text()
+    text = PAGE.read_text()
     if text != with_table(text):
-        print(f"{README}: its gallery is not that of gallery.json: python3 -m validation gallery --table")
+        print(f"{PAGE}: its gallery is not that of gallery.json: python3 -m validation gallery --table")
     return text == with_table(text)
 
 
 def with_table(text: str) -> str:
-    """The README with the table as it should be."""
+    """The page with the table as it should be."""
     known = json.loads(MEASURED.read_text()) if MEASURED.is_file() else {}
     head = ["| picture | shows | command | seconds, relMSE | Mitsuba, in the same seconds |", "|---|---|---|---|---|"]
     rows = [row(entry, Measured(**known[entry.name]) if entry.name in known else None) for entry in entries()]
     table = "".join(f"{line}\n" for line in [*head, *rows])
     if not TABLE.search(text):
-        raise Failure(f"{README}: no place for the gallery", "write `<!-- gallery -->` and `<!-- end -->` on lines of their own")
+        raise Failure(f"{PAGE}: no place for the gallery", "write `<!-- gallery -->` and `<!-- end -->` on lines of their own")
     return TABLE.sub(lambda _: table, text)
 
 

@@ -4,6 +4,7 @@ mod schema;
 #[cfg(test)]
 mod tests;
 mod text;
+mod words;
 
 use super::console;
 use crate::{
@@ -17,7 +18,7 @@ use clap::Args;
 /// Explain what scenes can hold.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Explain {
-    /// Plugin (spot), kind of plugins (emitter), parameter (cutoff_angle), keyframes or progress [default: list all plugins]
+    /// Plugin (spot), kind of plugins (emitter), parameter (cutoff_angle), word (fog, rotate), keyframes or progress [default: list all]
     #[arg(value_name = "PLUGIN")]
     pub topic: Option<String>,
 
@@ -55,7 +56,8 @@ pub(super) fn run(arguments: &Explain) -> Result<()> {
         None => {
             let kinds = KINDS.map(|(tag, _)| text::kind(tag)).join("\n");
             let progress = text::PROGRESS.lines().next().unwrap_or_default();
-            format!("{kinds}\n{KEYFRAMES}: {}\n{PROGRESS}: {progress}", text::KEYFRAMES)
+            let words = words::heads();
+            format!("{kinds}\n{words}\n\n{KEYFRAMES}: {}\n{PROGRESS}: {progress}", text::KEYFRAMES)
         }
         Some(topic) => explained(topic)?,
     };
@@ -68,8 +70,9 @@ pub(super) fn listing(tag: &str) -> String {
     text::listing(tag)
 }
 
-/// A plugin, a kind of plugins, or a parameter; several where they share the name.
+/// A word, a plugin, a kind of plugins, or a parameter; several where they share the name.
 fn explained(topic: &str) -> Result<String> {
+    let word = words::word(topic);
     let mut texts: Vec<String> = Vec::new();
     if topic == KEYFRAMES {
         texts.push(format!("{KEYFRAMES}: {}\n{}", text::KEYFRAMES, text::KEYFRAMES_WRITTEN));
@@ -88,17 +91,24 @@ fn explained(topic: &str) -> Result<String> {
     if texts.is_empty() {
         texts.extend(text::parameter(topic));
     }
+    texts.splice(0..0, word);
     if texts.is_empty() { Err(unknown(topic)) } else { Ok(texts.join("\n")) }
 }
 
 fn unknown(topic: &str) -> Error {
-    let mut known: Vec<&str> = KINDS.iter().map(|(tag, _)| *tag).chain([KEYFRAMES, PROGRESS]).collect();
+    let mut known: Vec<&str> =
+        KINDS.iter().map(|(tag, _)| *tag).chain([KEYFRAMES, PROGRESS]).chain(words::names()).collect();
     for (_, plugin, table) in everything() {
         known.push(plugin);
         known.extend(table.rows().map(|row| row.name));
     }
     let remedy = format!("{}\"tyndall explain\" lists all plugins", nearest(topic, &known));
-    Error::new("explain", "a plugin, a kind of plugins or a parameter", format!("\"{topic}\""), remedy)
+    Error::new(
+        "explain",
+        "a plugin, a kind of plugins, a parameter or a word",
+        format!("\"{topic}\""),
+        remedy,
+    )
 }
 
 /// Plugins of a kind, with their tables.

@@ -28,7 +28,7 @@ fn the_first_fog_is_built_step_by_step() {
         1,
     );
     let report = info(&foggy);
-    for part in ["camera      in fog", "emitter     spot in fog", "bank touches floor"] {
+    for part in ["camera      in fog", "emitter     spot in fog", "bank touches room"] {
         assert!(report.contains(part), "no {part} in {report}");
     }
 }

@@ -28,11 +28,11 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A gallery of its own, in a folder like that of the scenes."""
     scenes = tmp_path / "scenes"
     (scenes / "gallery").mkdir(parents=True)
-    for name, path in {"SCENES": scenes, "FOLDER": scenes / "gallery", "OUTPUT": tmp_path / "out", "README": scenes / "README.md"}.items():
+    for name, path in {"SCENES": scenes, "FOLDER": scenes / "gallery", "OUTPUT": tmp_path / "out", "PAGE": scenes / "GALLERY.md"}.items():
         monkeypatch.setattr(gallery, name, path)
     monkeypatch.setattr(gallery, "ENTRIES", scenes / "gallery" / "gallery.json")
     monkeypatch.setattr(gallery, "MEASURED", scenes / "gallery" / "measured.json")
-    (scenes / "README.md").write_text("before\n<!-- gallery -->\nold\n<!-- end -->\nafter\n")
+    (scenes / "GALLERY.md").write_text("before\n<!-- gallery -->\nold\n<!-- end -->\nafter\n")
     return scenes / "gallery"
 
 
@@ -51,7 +51,7 @@ def test_an_entry_is_rendered_measured_and_shown(folder: Path, monkeypatch: pyte
     assert cli.main(["gallery", "cube", "--threads", "1"]) == 0
     found = json.loads((folder / "measured.json").read_text())["cube"]
     assert 0 < found["relmse"] < 1 and 0 < found["mitsuba_relmse"] and found["mitsuba_by"] == "volpath"
-    text = (folder.parent / "README.md").read_text()
+    text = (folder.parent / "GALLERY.md").read_text()
     assert text.startswith("before\n") and text.endswith("after\n") and "old" not in text
     assert '<img src="gallery/cube.png"' in text and '<img src="gallery/cube.mitsuba.png"' in text and "**A cube** (LW96): a cube" in text
     assert cli.main(["gallery", "--check"]) == 1, "the other has no picture"

@@ -312,8 +312,8 @@ fn markdown(tag: &str) -> String {
 }
 
 #[test]
-fn the_readme_has_every_table() {
-    let path = "scenes/README.md";
+fn the_reference_has_every_table() {
+    let path = "scenes/REFERENCE.md";
     let mut text = std::fs::read_to_string(path).unwrap();
     for (tag, _) in KINDS {
         let (begin, end) = (format!("<!-- tyndall explain {tag} -->\n"), "<!-- end -->");

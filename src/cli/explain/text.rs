@@ -58,12 +58,8 @@ pub(super) fn listing(tag: &str) -> String {
 pub(super) fn plugin(tag: &str, name: &str, table: &'static Table) -> String {
     let (used, ignored) = rows(table);
     let kind = if tag == name { String::new() } else { format!(" ({tag})") };
-    let mut text = format!(
-        "{}{kind}: {}\n{}",
-        marked(tag, name),
-        table.about,
-        columns(used.into_iter().map(line).collect())
-    );
+    let about = wrapped(&format!("{}{kind}: {}", marked(tag, name), table.about), 0);
+    let mut text = format!("{about}\n{}", columns(used.into_iter().map(line).collect()));
     if !ignored.is_empty() {
         let rows = ignored.into_iter().map(|row| (row.name.to_owned(), row.about));
         text += &format!("\nAccepted, without effect:\n{}", columns(rows.collect()));
