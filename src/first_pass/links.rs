@@ -244,9 +244,9 @@ impl<'a> State<'a> {
         link.seen_from(self.elements.hierarchy.nodes[node as usize].centre())
     }
 
-    /// Makes up for links that have too few lines in some directions and too many in others. Of what each element sends into each bin, as much
-    /// arrives as its own lines say: a direction that brought more would keep its light in thick media for ever. If all elements were as bright, as
-    /// much would come to each as its own lines say.
+    /// Makes up for links that have too few lines in some directions and too many in others. As much of what an element sends into a bin arrives as
+    /// the element's own lines say: a direction that brought more would keep its light in thick media for ever. As much comes to an element as its
+    /// own lines say, if all elements are as bright. [`State::carry`] makes up for bins that no link serves.
     fn balance(&mut self, links: &[Vec<Link>]) {
         self.coming.fill(Spectrum::ONE);
         self.leaving = self.leaving(links);

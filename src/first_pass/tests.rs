@@ -144,6 +144,7 @@ fn both_methods_find_the_same() {
         r#"{"type": "roughconductor", "material": "none", "alpha": 0.4, "specular_reflectance": 0.8}"#;
     let fog = |words: &str| format!(r#""medium": {{"type": "homogeneous", {words}}},"#);
     for (name, walls, fog) in [
+        ("empty", DIFFUSE, String::new()),
         ("rough metal", ROUGH, String::new()),
         ("fog", DIFFUSE, fog(r#""sigma_t": 0.5, "albedo": 0.8"#)),
         ("dense fog", DIFFUSE, fog(r#""sigma_t": 5, "albedo": 0.9"#)),

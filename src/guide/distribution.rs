@@ -184,8 +184,8 @@ pub fn over(a: Spectrum, b: Spectrum) -> Spectrum {
     Spectrum::select(b.cmpgt(Spectrum::ZERO), a / b, Spectrum::ONE)
 }
 
-/// Visits all bins of a cluster and of its part that share light, with the share of the part's that is the cluster's. As much power of each
-/// bin is sent as the part has.
+/// Visits all pairs of a bin of a cluster and one of its part that share light, with what a value of the part counts in the cluster. The power of
+/// each bin of the part stays the same.
 fn join(cluster: Bins, part: Bins, mut visit: impl FnMut(usize, usize, f32)) {
     if let (Bins::Sides(own), Bins::Sides(other)) = (cluster, part) {
         let turned = usize::from(own.dot(other) < 0.0);
@@ -248,7 +248,8 @@ mod tests {
         turned.gather(&own);
         assert!(turned.at(Vec3::Z).x > 1.5 && turned.at(-Vec3::Z) == Spectrum::ZERO);
     }
-    /// What clusters make of each bin of a part is what the part finds of theirs.
+
+    /// Gathering parts into clusters, and what [`Distribution::part_of`] finds of clusters, are adjoint.
     #[test]
     fn parts_of_clusters_are_adjoint_to_gathering() {
         let normal = Vec3::new(0.6, 0.0, 0.8);
