@@ -49,6 +49,11 @@ pub fn note(path: &Path, reader: Reader) {
     }
 }
 
+/// The files that were noted so far, by the names that all spellings of a path share.
+pub fn all() -> Vec<PathBuf> {
+    read().keys().cloned().collect()
+}
+
 /// An error if `path`, links followed, is a file that is read, another name of one (a hard link), or a folder that holds
 /// one.
 pub fn guard(path: &Path) -> Result<()> {
@@ -113,6 +118,7 @@ mod tests {
             fs::write(at(name), "").unwrap();
         }
         note(&at("x/y/sky.exr"), Reader::Scene);
+        assert!(all().contains(&at("x/y/sky.exr").canonicalize().unwrap()));
         note(&at("none.exr"), Reader::Scene);
         note(&at("x"), Reader::Command);
         #[cfg(unix)]

@@ -53,11 +53,18 @@ class Opened:
 @contextmanager
 def opened(browser: Browser, file: Path, width: int, height: int, scheme: Scheme = "light") -> Iterator[Opened]:
     """The page at a size of window [CSS pixels], without a network."""
-    context = browser.new_context(viewport={"width": width, "height": height}, color_scheme=scheme, offline=True)
+    with visited(browser, file.resolve().as_uri(), width, height, scheme, offline=True) as page:
+        yield page
+
+
+@contextmanager
+def visited(browser: Browser, address: str, width: int, height: int, scheme: Scheme = "light", offline: bool = False) -> Iterator[Opened]:
+    """The page at an address."""
+    context = browser.new_context(viewport={"width": width, "height": height}, color_scheme=scheme, offline=offline)
     result = Opened(context.new_page())
     result.page.on("console", lambda message: result.complaints.append(f"{message.type}: {message.text}"))
     result.page.on("pageerror", lambda error: result.complaints.append(str(error)))
     result.page.on("request", lambda request: result.requests.append(request.url))
-    result.page.goto(file.resolve().as_uri())
+    result.page.goto(address)
     yield result
     context.close()

@@ -8,7 +8,7 @@ from tyndall.failure import Failure
 from tyndall.scene import open_scene
 from tyndall import judging
 from validation import assets, bias, cells, compare, comparison_page, coverage, efficiency, first_passes, full, gallery, growth, instructions, intervals, lottery
-from validation import matrix, package_tests, page, progressive, rays, reach, record, references, selftest, thresholds, truths
+from validation import matrix, package_tests, page, progressive, rays, reach, record, references, selftest, thresholds, truths, viewing
 from validation.cluster import cli as cluster
 from validation.compare import Effort
 from validation.files import made_by_command
@@ -47,6 +47,7 @@ def parser() -> argparse.ArgumentParser:
         module.add_options(add(commands, name, module.run, text))
     add_recorded(commands)
     add_page(commands)
+    add_view(commands)
     add_stability(commands)
     add_cluster(commands)
     add_selftest(commands)
@@ -177,6 +178,12 @@ def add_page(commands: Commands) -> None:
     command = add(commands, "page", lambda options: page.run(options.file, options.output, options.if_possible), "A study's page in a headless Chromium: it loads without errors or requests, and its controls work.")
     command.add_argument("file", type=Path, help="study.html")
     command.add_argument("--output", type=Path, default=OUTPUT / "page", help="folder for pictures of it")
+    command.add_argument("--if-possible", action="store_true", help="no failure where no Chromium is found")
+
+
+def add_view(commands: Commands) -> None:
+    command = add(commands, "view", lambda options: viewing.run(options.output, options.if_possible), "The page of `tyndall view` in a headless Chromium: it shows a scene that is moved by hand.")
+    command.add_argument("--output", type=Path, default=OUTPUT / "view", help="folder for pictures of it")
     command.add_argument("--if-possible", action="store_true", help="no failure where no Chromium is found")
 
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 from tyndall import program
 from tyndall.failure import Failure
-from validation import environment, matrix, package_tests, page, truths
+from validation import environment, matrix, package_tests, page, truths, viewing
 from validation.compare import Effort
 from validation.places import CROSSCHECK, OUTPUT, REQUIREMENTS_CLUSTER
 from validation.stability import run as stability
 
-TEXT = "Scenes against Mitsuba as it renders now, closed forms, stability and a page in a browser, at full depth: about an hour of two cores."
+TEXT = "Scenes against Mitsuba as it renders now, closed forms, stability and two pages in a browser, at full depth: about an hour of two cores."
 
 
 def run() -> bool:
@@ -20,6 +20,7 @@ def run() -> bool:
     parts: dict[str, Callable[[], bool]] = {
         "package": package,
         "page in a browser": study_page,
+        "view in a browser": lambda: viewing.run(OUTPUT / "view", if_possible=True),
         "closed forms": lambda: truths.run(Effort(batches=16, spp=512)),
         "stability": lambda: stability.run(stability.Effort(), OUTPUT / "stability"),
         "matrix": lambda: matrix.live(count=matrix.DEEP_CELLS),

@@ -16,6 +16,7 @@ use super::{
     report::Report,
     strategies,
     study::Study,
+    view,
 };
 use clap::{Parser, Subcommand};
 
@@ -52,6 +53,14 @@ Exit codes:
 pub enum Command {
     /// Render a scene to an image
     Render(Box<Render>),
+    /// Look at a scene in a browser while it is written: the picture refines, the camera is moved by hand
+    ///
+    /// Prints the address of a page, which this machine alone can open, and serves it until Ctrl-C. Dragging turns the camera
+    /// about what is in the middle of the image, the wheel brings it nearer, Shift and dragging moves it sideways. The page
+    /// shows the lines that place the camera, to be pasted into the scene file, and reads the scene again when it is saved.
+    /// A moving camera shows surfaces in fog without shadows; one at rest, what `tyndall render` renders, without a pilot. No
+    /// file is written. For example: tyndall view fog.json, tyndall view plume.vdb
+    View(Box<view::Arguments>),
     /// Write a scene to start from: a small one by name, or one around a volume file
     ///
     /// For example: tyndall new fog -o fog.json, tyndall new plume.vdb > plume.json
@@ -164,6 +173,7 @@ impl Command {
             Self::Flights(flights) => Some(&flights.answer),
             Self::Pixel(_)
             | Self::Convert(_)
+            | Self::View(_)
             | Self::New(_)
             | Self::Denoise(_)
             | Self::Merge(_)

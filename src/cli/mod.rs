@@ -36,6 +36,7 @@ mod report;
 mod scene;
 mod strategies;
 mod study;
+mod view;
 mod volumes;
 
 use crate::error::Result;
@@ -66,6 +67,7 @@ pub fn run() -> ExitCode {
 fn obey(command: &Command) -> Result<bool> {
     let outcome = match command {
         Command::Render(render) => render::run(render),
+        Command::View(view) => view::run(view),
         Command::Merge(merge) => merge::run(merge),
         Command::Strategies(strategies) => strategies::run(strategies),
         Command::Guide(guide) => guide::run(guide),

@@ -102,6 +102,21 @@ impl Film {
         Self::bordered(Window { offset, size, ..self.window }, self.filter, border, self.format)
     }
 
+    /// The same image by pixels `divisor` times as wide and as high, one at least; it is cut off at its border.
+    pub fn coarser(&self, divisor: u32) -> Self {
+        let Window { full_size, offset, size } = self.window;
+        let least = |pixels: [u32; 2]| pixels.map(|side| (side / divisor).max(1));
+        let (size, offset) = (least(size), offset.map(|side| side / divisor));
+        let whole = least(full_size);
+        let full_size = [0, 1].map(|axis| whole[axis].max(offset[axis] + size[axis]));
+        Self::new(
+            Window { full_size, offset, size },
+            self.filter,
+            false,
+            Format { alpha: false, ..self.format },
+        )
+    }
+
     /// Number of pixels.
     pub fn len(&self) -> usize {
         self.width as usize * self.height as usize

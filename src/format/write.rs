@@ -18,7 +18,7 @@ use super::{
     read::{Spelling, read_whole, spelling},
 };
 use crate::{
-    description::{Library, Location, Object, TransformStep},
+    description::{Library, Location, Object, Property, TransformStep},
     error::{Error, Result},
 };
 use std::{collections::HashSet, path::Path, slice};
@@ -65,6 +65,14 @@ fn spell(root: &Object, spelling: Spelling) -> Result<String> {
     match spelling {
         Spelling::Xml => xml::file(root),
         Spelling::Json => json::file(root),
+    }
+}
+
+/// The lines of a file that give an object `property`, which is a transform.
+pub fn transform(property: &Property, spelling: Spelling) -> Result<String> {
+    match spelling {
+        Spelling::Xml => xml::property(property),
+        Spelling::Json => json::property(property),
     }
 }
 

@@ -4,6 +4,7 @@
 mod asked;
 mod finish;
 mod groups;
+mod look;
 mod media;
 mod shapes;
 mod view;

@@ -39,3 +39,4 @@ mod starting;
 mod strategies;
 mod study;
 mod unseen;
+mod viewing;

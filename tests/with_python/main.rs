@@ -51,6 +51,12 @@ fn the_python_package_passes_its_own_tests() {
     must_hold(&["test"]);
 }
 
+/// The page of `tyndall view` in a Chromium, where there is one.
+#[test]
+fn a_scene_is_viewed_in_a_browser() {
+    must_hold(&["view", "--if-possible"]);
+}
+
 /// A study's page in a Chromium, where there is one.
 #[test]
 fn a_studys_page_works_in_a_browser() {

@@ -54,7 +54,6 @@ def test_without_the_package_it_is_said(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_open_image_denoise_lowers_the_error() -> None:
-    pytest.importorskip("pyoidn", reason="pip install pyoidn")
     options: dict[str, Any] = {"integrator": "pt", "size": (64, 64)}
     reference = tyndall.render(SCENE, spp=512, seed=100, **options)
     image = tyndall.render(SCENE, spp=8, features=True, **options)

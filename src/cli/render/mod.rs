@@ -7,7 +7,7 @@ mod every;
 mod features;
 mod files;
 pub(super) mod precision;
-mod preview;
+pub(super) mod preview;
 mod progressive;
 pub(super) mod target;
 mod task;

@@ -7,7 +7,7 @@ use super::{
     parts, plain, shortened, unspeakable,
 };
 use crate::{
-    description::{Keyframes, Object, TransformStep, Value, keyframes::Interpolation},
+    description::{Keyframes, Object, Property, TransformStep, Value, keyframes::Interpolation},
     error::Result,
     format::{parameters::escaped, tags::derive},
 };
@@ -19,6 +19,11 @@ pub(super) fn file(root: &Object) -> Result<String> {
         return Err(unspeakable(&root.location, "JSON", found, "remove the type"));
     }
     Ok(object(root, true, None, &tags(root))?.file())
+}
+
+/// A `property` without objects in it as an entry of one.
+pub(super) fn property(property: &Property) -> Result<String> {
+    Ok(Json::entry(&property.name, &value(&property.value, None, &Tags::default())?))
 }
 
 /// `key` is that by which the outermost object leads to it: no need to say the id again.

@@ -31,6 +31,14 @@ impl Json {
         text
     }
 
+    /// The text of an entry of a map: its key, and what it holds.
+    pub(super) fn entry(key: &str, value: &Self) -> String {
+        let mut text = format!("{}: ", quoted(key));
+        let before = text.chars().count();
+        value.lay(&mut text, 0, before);
+        text
+    }
+
     fn lay(&self, out: &mut String, indent: usize, before: usize) {
         let line = self.line();
         match self {

@@ -21,6 +21,13 @@ pub(super) fn file(root: &Object) -> Result<String> {
     Ok(writer.out)
 }
 
+/// The element of a `property` without objects in it.
+pub(super) fn property(property: &Property) -> Result<String> {
+    let mut writer = Writer { out: String::new() };
+    writer.property(property, 0)?;
+    Ok(writer.out)
+}
+
 struct Writer {
     out: String,
 }

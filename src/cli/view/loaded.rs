@@ -1,0 +1,79 @@
+//! A scene as it was read, and how it is to be rendered.
+
+use super::{Arguments, camera::Camera};
+use crate::{
+    cli::scene,
+    description::{Location, Position, Property, TransformStep, Value},
+    error::{Error, Result},
+    film::Film,
+    format::{self, Spelling},
+    passes::{Settings, budget::Budget},
+    scene::build::Setup,
+    settings::options::Guiding,
+};
+use std::sync::Arc;
+
+/// A scene that can be looked at.
+pub(super) struct Loaded {
+    /// The scene, its camera wherever it was put last.
+    pub setup: Setup,
+    /// How it is rendered, without a pilot.
+    pub settings: Settings,
+    /// The film of the scene's own camera.
+    pub film: Film,
+    /// The steps by which the scene places its camera; none of one that cannot be moved.
+    pub placement: Option<Vec<TransformStep>>,
+    /// Its camera; why it cannot be moved.
+    pub home: std::result::Result<Camera, Error>,
+}
+
+impl Loaded {
+    /// Reads the scene that `arguments` name.
+    pub(super) fn new(arguments: &Arguments) -> Result<Self> {
+        let setup = scene::load(&arguments.scene, arguments.overrides())?;
+        let mut settings = arguments.estimator.requested(&setup, 0, Budget::ENDLESS)?;
+        // What was learnt for one view would have to be learnt again for the next.
+        if arguments.estimator.guide.is_none() {
+            settings.options.effort.guide = Guiding::Never;
+        }
+        let placement = setup.placement().map(<[TransformStep]>::to_vec);
+        let home = placement.clone().map(|steps| home(&setup, &steps));
+        let film = setup.film.clone();
+        Ok(Self { setup, settings, film, placement: placement.ok(), home })
+    }
+
+    /// How wide the image is, so far from the camera (m).
+    pub(super) fn breadth_at(&self, distance: f64) -> f64 {
+        let breadth = self.setup.breadth();
+        if self.setup.scene.sensor.is_parallel() { breadth } else { breadth * distance }
+    }
+
+    /// The lines of a scene file that place `camera`, and true; or why nothing moves it.
+    pub(super) fn lines(&self, camera: Option<&Camera>) -> (String, bool) {
+        let lines = match (camera, &self.home) {
+            (Some(camera), _) => self.spelled(camera),
+            (None, Err(error)) => Err(error.clone()),
+            (None, Ok(home)) => self.spelled(home),
+        };
+        match lines {
+            Ok(lines) => (lines, true),
+            Err(error) => (format!("This sensor can only be looked at. {error}"), false),
+        }
+    }
+
+    fn spelled(&self, camera: &Camera) -> Result<String> {
+        let Location { file, position } = self.setup.location();
+        let spelling = if matches!(position, Position::Text { .. }) { Spelling::Xml } else { Spelling::Json };
+        let location = Location { file: Arc::clone(file), position: Position::Path("$".to_owned()) };
+        let value = Value::Transform(camera.rounded());
+        format::transform(&Property { name: "to_world".to_owned(), value, location }, spelling)
+    }
+}
+
+/// The camera that `steps` place in a scene, turning about what is in the middle of its image.
+fn home(setup: &Setup, steps: &[TransformStep]) -> Camera {
+    let mut camera = Camera::placed(steps, setup.scene.sensor.is_parallel());
+    let distance = setup.distance_ahead().or_else(|| setup.distance_to_middle());
+    distance.into_iter().for_each(|distance| camera.grip(distance));
+    camera
+}
