@@ -3,6 +3,8 @@
 use super::{Volume, VolumeModel};
 use crate::math::{Affine3A, RaySegment, Spectrum, Vec3, axes, cells::Cells, vec3};
 
+use rayon::prelude::*;
+
 pub use crate::math::cells::Crossing as Piece;
 
 /// Cells along the longest side of a box.
@@ -53,8 +55,8 @@ impl Coarse {
     pub fn of(
         low: Vec3,
         high: Vec3,
-        value: impl Fn(Vec3) -> Spectrum,
-        range: impl Fn(Vec3, Vec3) -> [f32; 2],
+        value: impl Fn(Vec3) -> Spectrum + Sync,
+        range: impl Fn(Vec3, Vec3) -> [f32; 2] + Sync,
     ) -> Self {
         let lattice = Coarse::lattice(low, high, CELLS);
         lattice.fill(|index| {
@@ -87,14 +89,22 @@ impl<T> Coarse<T> {
     }
 
     /// What `change` makes of every cell.
-    pub fn map<U>(&self, change: impl Fn(&T) -> U) -> Coarse<U> {
+    pub fn map<U: Send>(&self, change: impl Fn(&T) -> U + Sync) -> Coarse<U>
+    where
+        T: Sync,
+    {
         self.fill(|index| change(self.cell(index)))
     }
 
     /// The same lattice, with what `value` gives for the number of every cell.
-    pub fn fill<U>(&self, value: impl FnMut(u32) -> U) -> Coarse<U> {
+    pub fn fill<U: Send>(&self, value: impl Fn(u32) -> U + Sync) -> Coarse<U> {
         let Self { to_cells, to_world, size, .. } = *self;
-        Coarse { to_cells, to_world, size, cells: (0..self.cells.len() as u32).map(value).collect() }
+        Coarse {
+            to_cells,
+            to_world,
+            size,
+            cells: (0..self.cells.len() as u32).into_par_iter().map(&value).collect(),
+        }
     }
 
     /// All cells, x fastest.
