@@ -8,7 +8,7 @@ from tyndall.failure import Failure
 from tyndall.scene import open_scene
 from tyndall import judging
 from validation import assets, bias, cells, compare, comparison_page, coverage, efficiency, first_passes, full, gallery, growth, instructions, intervals, lottery
-from validation import matrix, package_tests, page, progressive, rays, reach, record, references, selftest, thresholds, truths, viewing
+from validation import matrix, package_tests, page, progressive, rays, reach, record, references, selftest, thresholds, truths, viewing, wheels
 from validation.cluster import cli as cluster
 from validation.compare import Effort
 from validation.files import made_by_command
@@ -26,6 +26,7 @@ MEASURES = {
     "record": (record, "Renews the reports that are out of date, and the tables that pages take from them."),
     "intervals": (intervals, "Whether printed intervals hold the truth as often as they say, and whether printed noise is the image's."),
     "lottery": (lottery, "The default choice of strategies against others, in scenes that nobody made."),
+    "wheels": (wheels, wheels.TEXT),
 }
 """Commands whose modules know their options."""
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from PIL import Image
 
 import tyndall
 from tyndall import exr, program
@@ -42,6 +43,12 @@ OTHER_SEED = 1
 """Of the second render: the difference of both is their error."""
 FEWER = 1 / 8
 """Its samples over those of the first."""
+DENOISE = "--denoise"
+"""Pictures of commands with it are large, and JPEG files with a smaller one for the table; they are measured as they are before."""
+QUALITY = 88
+"""Of JPEG files: what they lose is not seen beside what a denoiser loses."""
+SMALL = 480
+"""Pixels across a small picture, twice as many as it is shown by."""
 
 
 def add_options(command: argparse.ArgumentParser) -> None:
@@ -98,7 +105,18 @@ class Entry:
     @property
     def pictures(self) -> list[Path]:
         """Tyndall's, and Mitsuba's if there is one."""
-        return [FOLDER / f"{self.name}{end}" for end in (".png", ".mitsuba.png")[: 1 + self.mitsuba]]
+        end = "jpg" if self.is_denoised else "png"
+        return [FOLDER / f"{name}.{end}" for name in (self.name, f"{self.name}.mitsuba")[: 1 + self.mitsuba]]
+
+    @property
+    def files(self) -> list[Path]:
+        """Those, and the small ones beside them."""
+        return [path for picture in self.pictures for path in ((picture, small(picture)) if self.is_denoised else (picture,))]
+
+    @property
+    def is_denoised(self) -> bool:
+        """By Open Image Denoise."""
+        return DENOISE in self.options
 
     @property
     def moves(self) -> bool:
@@ -147,11 +165,11 @@ def measured(entry: Entry, threads: int, folder: Path) -> Measured:
     """A picture: rendered, and again by another seed with fewer samples."""
     first = rendered(entry.options, entry.scene, threads, folder / "image.exr")
     few = max(1, round(first["samples_per_pixel"] * FEWER))
-    rendered(without_samples(entry.options), entry.scene, threads, folder / "other.exr", seed=OTHER_SEED, spp=few)
+    rendered(plain(entry.options), entry.scene, threads, folder / "other.exr", seed=OTHER_SEED, spp=few)
     image, other = (exr.read_image(folder / name) for name in ("image.exr", "other.exr"))
     share = first["samples_per_pixel"] / (first["samples_per_pixel"] + few)
     mean = share * image + (1 - share) * other
-    entry.pictures[0].write_bytes(still((folder / "image.png").read_bytes()))
+    keep(folder / ("image.denoised.png" if entry.is_denoised else "image.png"), entry.pictures[0])
     seconds, relmse = first["render_seconds"], relmse_of(image, mean) / (1 - share)
     if not entry.mitsuba:
         return Measured(seconds, threads, relmse)
@@ -161,9 +179,25 @@ def measured(entry: Entry, threads: int, folder: Path) -> Measured:
     return Measured(seconds, threads, relmse, took, max(0, relmse_of(exr.read_image(file), mean) - share * relmse), kind)
 
 
-def without_samples(options: list[str]) -> list[str]:
-    """The options of a render but --spp."""
-    return [word for before, word in zip(["", *options], options) if "--spp" not in (before, word)]
+def plain(options: list[str]) -> list[str]:
+    """The options of a render but --spp and --denoise."""
+    return [word for before, word in zip(["", *options], options) if "--spp" not in (before, word) and word != DENOISE]
+
+
+def keep(png: Path, picture: Path) -> None:
+    """Stores a picture in the gallery, without what it says of itself; one in JPEG with a small one beside it."""
+    if picture.suffix == ".png":
+        picture.write_bytes(still(png.read_bytes()))
+        return
+    with Image.open(png) as image:
+        whole = image.convert("RGB")
+    whole.save(picture, quality=QUALITY, optimize=True)
+    whole.resize((SMALL, round(whole.height * SMALL / whole.width)), Image.Resampling.LANCZOS).save(small(picture), quality=QUALITY, optimize=True)
+
+
+def small(picture: Path) -> Path:
+    """The small one beside it."""
+    return picture.with_suffix(f".small{picture.suffix}")
 
 
 def rendered(options: list[str], scene: Path, threads: int, output: Path, **more: int) -> dict[str, Any]:
@@ -209,17 +243,17 @@ def animated(entry: Entry, threads: int, folder: Path) -> Measured:
     return Measured(seconds, threads)
 
 
-def shown_as(entry: Entry, image: Path, png: Path) -> None:
+def shown_as(entry: Entry, image: Path, picture: Path) -> None:
     """Mitsuba's picture through the exposure and the view transform of ours."""
-    words = entry.options
+    words, png = entry.options, image.with_suffix(".png")
     view = [word for at, word in enumerate(words) if VIEW & {word.partition("=")[0], *words[at - 1 : at]}]
     program.call([str(program.binary()), "convert", str(image), str(png), *view])
-    png.write_bytes(still(png.read_bytes()))
+    keep(png, picture)
 
 
 def holds(entry: Entry) -> bool:
     """Whether the entry's scene loads without a warning, its options exist, and its pictures are there; says what does not hold."""
-    wrong = [f"{path} is not there: python3 -m validation gallery {entry.name}" for path in [entry.scene, *entry.pictures] if not path.is_file()]
+    wrong = [f"{path} is not there: python3 -m validation gallery {entry.name}" for path in [entry.scene, *entry.files] if not path.is_file()]
     wrong += [f"tyndall render has no option {option}" for option in set(options_of(entry)) - known_options()]
     wrong += warnings(entry) if entry.scene.is_file() else []
     for what in wrong:
@@ -273,7 +307,8 @@ def row(entry: Entry, found: Measured | None) -> str:
         told = "" if found is None or found.mitsuba_seconds is None else f"<br>{found.mitsuba_by}: {figures(found.mitsuba_seconds, found.mitsuba_relmse)}"
         theirs = shown(entry.pictures[1]) + told
     after = f" ({entry.after})" if entry.after else ""
-    return f"| {shown(entry.pictures[0])} | **{entry.title}**{after}: {entry.shows} | `{entry.command}` | {ours} | {theirs} |"
+    denoised = "<br>denoised; relMSE before" if entry.is_denoised else ""
+    return f"| {shown(entry.pictures[0])} | **{entry.title}**{after}: {entry.shows} | `{entry.command}` | {ours}{denoised} | {theirs} |"
 
 
 def figures(seconds: float, relmse: float | None) -> str:
@@ -282,5 +317,6 @@ def figures(seconds: float, relmse: float | None) -> str:
 
 
 def shown(path: Path) -> str:
-    """A picture in Markdown; narrow, for both stand in one line."""
-    return f'<img src="{path.relative_to(SCENES)}" width="240">'
+    """A picture in Markdown; narrow, for both stand in one line. A large one is a link away."""
+    name = path.relative_to(SCENES)
+    return f'<img src="{name}" width="240">' if path.suffix == ".png" else f'[<img src="{small(name)}" width="240">]({name})'

@@ -441,7 +441,7 @@ fn pictures_say_how_they_were_made() {
     for name in ["fog.exr", "fog.png", "fog.sums"] {
         let said = good(sandbox.run(&format!("info {name}"))).out();
         for words in
-            ["\ncommand              tyndall render fog.json", "pt", "tyndall 0.1.0", "fog.json", "vacuum"]
+            ["\ncommand              tyndall render fog.json", "pt", concat!("tyndall ", env!("CARGO_PKG_VERSION")), "fog.json", "vacuum"]
         {
             let words = words.replace("vacuum", "profile");
             assert!(said.contains(&words), "{name}: {words}: {said}");

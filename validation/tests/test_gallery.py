@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from tyndall import display
 from tyndall.failure import Failure
@@ -57,6 +58,21 @@ def test_an_entry_is_rendered_measured_and_shown(folder: Path, monkeypatch: pyte
     assert cli.main(["gallery", "--check"]) == 1, "the other has no picture"
     shutil.copy(folder / "cube.png", folder / "other.png")
     assert cli.main(["gallery", "--check"]) == 0
+
+
+def test_a_denoised_picture_has_a_small_one_and_is_measured_as_it_was_before(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mitsuba, "libllvm", lambda: None)
+    monkeypatch.setattr(gallery, "SMALL", 4)
+    hang(folder, cube=entry(mitsuba=True, command=f"{COMMAND} --denoise"), plain=entry())
+    assert cli.main(["gallery", "--threads", "1"]) == 0
+    for name, size in (("cube", (8, 6)), ("cube.small", (4, 3)), ("cube.mitsuba", (8, 6)), ("cube.mitsuba.small", (4, 3))):
+        with Image.open(folder / f"{name}.jpg") as image:
+            assert image.size == size
+    found = json.loads((folder / "measured.json").read_text())
+    assert found["cube"]["relmse"] == found["plain"]["relmse"]
+    assert '[<img src="gallery/cube.small.jpg" width="240">](gallery/cube.jpg)' in (folder.parent / "GALLERY.md").read_text()
+    (folder / "cube.small.jpg").unlink()
+    assert cli.main(["gallery", "--check"]) == 1
 
 
 def test_a_command_that_shows_frames_makes_a_moving_picture(folder: Path) -> None:
