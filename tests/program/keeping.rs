@@ -440,9 +440,13 @@ fn pictures_say_how_they_were_made() {
     good(render(&sandbox, "--spp 3 --integrator pt --seed 7 -o fog.exr --sums fog.sums"));
     for name in ["fog.exr", "fog.png", "fog.sums"] {
         let said = good(sandbox.run(&format!("info {name}"))).out();
-        for words in
-            ["\ncommand              tyndall render fog.json", "pt", concat!("tyndall ", env!("CARGO_PKG_VERSION")), "fog.json", "vacuum"]
-        {
+        for words in [
+            "\ncommand              tyndall render fog.json",
+            "pt",
+            concat!("tyndall ", env!("CARGO_PKG_VERSION")),
+            "fog.json",
+            "vacuum",
+        ] {
             let words = words.replace("vacuum", "profile");
             assert!(said.contains(&words), "{name}: {words}: {said}");
         }
