@@ -54,12 +54,13 @@ def tried(wheel: Path) -> Iterator[Finding]:
         folder = Path(name)
         venv.create(folder / "env", with_pip=True)
         python, program = folder / "env" / "bin" / "python", folder / "env" / "bin" / "tyndall"
-        for claim, command in {
+        commands: dict[str, list[str | Path]] = {
             f"{wheel.name} installs": [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", wheel.resolve()],
             "tyndall new writes a scene": [program, "new", "fog", "-o", "fog.json"],
             "tyndall render renders it": [program, "render", "fog.json", "--spp", "1", "--size", "16x12"],
             "Python renders it": [python, "-c", TRIAL],
-        }.items():
+        }
+        for claim, command in commands.items():
             yield claim, against(command, folder)
 
 

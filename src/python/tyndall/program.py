@@ -4,6 +4,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import sysconfig
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -42,8 +43,8 @@ def clones() -> list[Path]:
 
 
 def environment() -> dict[str, str]:
-    """That of the program: its words are read, so they have no colours, which notebooks ask for."""
-    return {**os.environ, "NO_COLOR": "1"}
+    """That of the program: its words are read, so they have no colours, which notebooks ask for; what it needs Python for is here."""
+    return {"TYNDALL_PYTHON": sys.executable, **os.environ, "NO_COLOR": "1"}
 
 
 def flags(options: Mapping[str, Option]) -> list[str]:
