@@ -4,9 +4,10 @@
 use crate::error::{Error, Result};
 use std::{
     collections::BTreeMap,
-    fs::Metadata,
+    fs::{self, Metadata},
     path::{Path, PathBuf},
     sync::{Mutex, MutexGuard, PoisonError},
+    time::SystemTime,
 };
 
 /// What reads a file.
@@ -47,6 +48,21 @@ pub fn note(path: &Path, reader: Reader) {
     {
         read().entry(at).or_insert_with(|| (path.to_owned(), reader));
     }
+}
+
+/// When a file was written, and its bytes: another one has another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stamp {
+    /// When it was written last.
+    pub written: SystemTime,
+    /// Its length (bytes).
+    pub bytes: u64,
+}
+
+/// That of the file at `path`; none of one that is not there.
+pub fn stamp(path: &Path) -> Option<Stamp> {
+    let found = fs::metadata(path).ok()?;
+    Some(Stamp { written: found.modified().ok()?, bytes: found.len() })
 }
 
 /// The files that were noted so far, by the names that all spellings of a path share.

@@ -3,7 +3,7 @@
 use super::starting::{self, Portrait};
 use crate::{
     error::{Error, Result},
-    inputs::{self, Reader},
+    inputs::{self, Reader, Stamp},
     volume::grid::is_volume,
 };
 use std::{
@@ -21,15 +21,19 @@ pub fn is_standard_input(path: &Path) -> bool {
     path.as_os_str() == STANDARD_INPUT
 }
 
-/// The scene around the volume file at `path`. It is made once: that takes as long as reading the file.
+/// The file, when it was written, and the scene around it.
+type Kept = (PathBuf, Option<Stamp>, Arc<Portrait>);
+
+/// The scene around the volume file at `path`. It is made once, until the file is written again: that takes as long as reading
+/// it.
 fn portrait(path: &Path) -> Result<Arc<Portrait>> {
-    static KEPT: Mutex<Option<(PathBuf, Arc<Portrait>)>> = Mutex::new(None);
-    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    static KEPT: Mutex<Option<Kept>> = Mutex::new(None);
+    let (mut kept, now) = (KEPT.lock().unwrap_or_else(PoisonError::into_inner), inputs::stamp(path));
     match &*kept {
-        Some((of, portrait)) if of == path => Ok(portrait.clone()),
+        Some((of, then, portrait)) if of == path && *then == now => Ok(portrait.clone()),
         _ => {
             let portrait = Arc::new(starting::of_file(path)?);
-            *kept = Some((path.to_owned(), portrait.clone()));
+            *kept = Some((path.to_owned(), now, portrait.clone()));
             Ok(portrait)
         }
     }

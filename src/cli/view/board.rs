@@ -158,6 +158,8 @@ impl Board {
                     state.display.view = Some(view);
                     state.number += 1;
                 }
+                // Once is enough, however often files are written while they are read.
+                Wish::Reload if state.wishes.contains(&wish) => {}
                 _ => {
                     state.wishes.push(wish);
                     STALE.store(true, Ordering::Relaxed);
@@ -201,7 +203,8 @@ impl Board {
     /// What is to be shown after the change `number`, once there is something; none where nothing came, or the program ends.
     pub(super) fn after(&self, number: u64) -> Option<Shown> {
         let is_old = |state: &mut State| {
-            !state.is_closed && (state.number <= number || state.picture.pixels.is_empty())
+            let is_empty = state.picture.pixels.is_empty() && state.error.is_none();
+            !state.is_closed && (state.number <= number || is_empty)
         };
         let waited = self.changed.wait_timeout_while(self.state(), PATIENCE, is_old);
         let (mut state, _) = waited.unwrap_or_else(PoisonError::into_inner);
@@ -218,5 +221,27 @@ impl Board {
     /// Lets everybody go who waits.
     pub(super) fn close(&self) {
         self.change(|state| state.is_closed = true);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_is_read_once_however_often_it_is_written_meanwhile() {
+        let board = Board::new(Display::default());
+        board.wish([Wish::Reload, Wish::Home, Wish::Reload]);
+        assert_eq!(board.take_wishes(), [Wish::Reload, Wish::Home]);
+        board.wish([Wish::Reload]);
+        assert_eq!(board.take_wishes(), [Wish::Reload]);
+    }
+
+    #[test]
+    fn an_error_is_shown_before_there_is_a_picture() {
+        let board = Board::new(Display::default());
+        board.tell(Some("error".to_owned()));
+        let shown = board.after(0).expect("the error");
+        assert_eq!((shown.error.as_deref(), shown.picture.size), (Some("error"), [0, 0]));
     }
 }

@@ -10,8 +10,12 @@ use std::f64::consts::PI;
 const STEEPEST: f64 = 0.01;
 /// The pivot is not nearer than this, nor farther (m).
 const DISTANCES: [f64; 2] = [1e-4, 1e7];
-/// Digits behind the point of lines for a distance from 1 m to 10 m: a hundredth of a pixel is not seen.
-const DIGITS: i32 = 4;
+/// The part of a pixel that lines may be wrong by, at a distance of 1 m or at the pivot, whichever is nearer.
+const UNSEEN: f64 = 0.05;
+/// Digits behind the point that lines have.
+const DIGITS: [f64; 2] = [4.0, 12.0];
+/// Parallel rays are not brought closer together than this, nor farther apart.
+const SCALES: [f64; 2] = [1e-6, 1e9];
 
 /// A camera, in the coordinates of the scene file.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,13 +78,15 @@ impl Camera {
         self.position += right * self.scale.x.signum() * self.left() + down * self.up;
     }
 
-    /// Comes nearer to the pivot: so many times by the factor e. Parallel rays come closer together.
+    /// Comes nearer to the pivot: so many times by the factor e. Parallel rays come closer together, and begin where they did.
     pub(super) fn dolly(&mut self, times: f64) {
-        let pivot = self.pivot();
         if self.is_parallel {
-            let factor = (-times).exp();
+            let wide = self.scale.x.abs();
+            let factor = (wide * (-times).exp()).clamp(SCALES[0], SCALES[1]) / wide;
             self.scale *= DVec3::new(factor, factor, 1.0);
+            return;
         }
+        let pivot = self.pivot();
         self.grip(self.distance * (-times).exp());
         self.position = pivot - self.distance * self.forward;
     }
@@ -105,9 +111,20 @@ impl Camera {
         self.spelled(|x| x)
     }
 
-    /// The same in as few digits as place it within a hundredth of a pixel.
-    pub(super) fn rounded(&self) -> Vec<TransformStep> {
-        let digits = (DIGITS - self.distance.log10().floor() as i32).clamp(0, 12) as usize;
+    /// True if it is where `other` is.
+    pub(super) fn is_at(&self, other: &Self) -> bool {
+        self.position == other.position
+    }
+
+    /// True if it is one of the same kind.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        self.is_parallel == other.is_parallel
+    }
+
+    /// The same in as few digits as place it, where a pixel is `sharpness` wide (m).
+    pub(super) fn rounded(&self, sharpness: f64) -> Vec<TransformStep> {
+        // Half of the last digit is what rounding moves by.
+        let digits = (-(2.0 * UNSEEN * sharpness).log10()).ceil().clamp(DIGITS[0], DIGITS[1]) as usize;
         self.spelled(|x| format!("{x:.digits$}").parse().map_or(x, |x: f64| x + 0.0))
     }
 
@@ -229,7 +246,10 @@ mod tests {
             let mut camera = Camera::placed(&steps, true);
             camera.grip(12.0);
             assert!(compose(&camera.steps()).abs_diff_eq(compose(&steps), 1e-9), "{steps:?}: {camera:?}");
-            assert!(compose(&camera.rounded()).abs_diff_eq(compose(&steps), 1e-3), "{steps:?}: {camera:?}");
+            assert!(
+                compose(&camera.rounded(0.01)).abs_diff_eq(compose(&steps), 1e-3),
+                "{steps:?}: {camera:?}"
+            );
             camera.orbit([0.3, -0.1]);
             let again = Camera {
                 distance: camera.distance,
@@ -273,9 +293,18 @@ mod tests {
         camera.orbit([0.1, 0.0]);
         let expected =
             TransformStep::LookAt { origin: [-1.5451, 0.0, 4.7553], target: [0.0; 3], up: [0.0, 1.0, 0.0] };
-        assert_eq!(camera.rounded(), [expected]);
-        camera.grip(512.0);
-        let TransformStep::LookAt { origin, .. } = camera.rounded()[0] else { panic!() };
-        assert_eq!(origin, [-1.55, 0.0, 4.76]);
+        assert_eq!(camera.rounded(0.01), [expected]);
+        let TransformStep::LookAt { origin, .. } = camera.rounded(1e-5)[0] else { panic!() };
+        assert_eq!(origin, [-1.545085, 0.0, 4.755283]);
+    }
+
+    #[test]
+    fn parallel_rays_come_closer_and_begin_where_they_did() {
+        let looks = TransformStep::LookAt { origin: [0.0, 0.0, 5.0], target: [0.0; 3], up: [0.0, 1.0, 0.0] };
+        let mut camera = Camera::placed(&[TransformStep::Scale([-2.0, 3.0, 1.0]), looks], true);
+        camera.dolly(2f64.ln());
+        assert!(near(camera.scale, [-1.0, 1.5, 1.0]) && near(camera.position, [0.0, 0.0, 5.0]), "{camera:?}");
+        camera.dolly(1e300);
+        assert!(camera.scale.x < 0.0 && camera.scale.x > -1e-5, "{camera:?}");
     }
 }

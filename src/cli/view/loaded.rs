@@ -7,11 +7,15 @@ use crate::{
     error::{Error, Result},
     film::Film,
     format::{self, Spelling},
+    medium::MediumIndex,
     passes::{Settings, budget::Budget},
     scene::build::Setup,
     settings::options::Guiding,
 };
 use std::sync::Arc;
+
+/// Numbers of four bytes that a view keeps of every pixel, at least: those of a render, the picture, and what a page gets of it.
+const NUMBERS: usize = 16;
 
 /// A scene that can be looked at.
 pub(super) struct Loaded {
@@ -23,6 +27,8 @@ pub(super) struct Loaded {
     pub film: Film,
     /// The steps by which the scene places its camera; none of one that cannot be moved.
     pub placement: Option<Vec<TransformStep>>,
+    /// What that camera is in, as the scene states it or its boundaries say.
+    pub medium: MediumIndex,
     /// Its camera; why it cannot be moved.
     pub home: std::result::Result<Camera, Error>,
 }
@@ -31,6 +37,7 @@ impl Loaded {
     /// Reads the scene that `arguments` name.
     pub(super) fn new(arguments: &Arguments) -> Result<Self> {
         let setup = scene::load(&arguments.scene, arguments.overrides())?;
+        setup.film.check_memory(NUMBERS)?;
         let mut settings = arguments.estimator.requested(&setup, 0, Budget::ENDLESS)?;
         // What was learnt for one view would have to be learnt again for the next.
         if arguments.estimator.guide.is_none() {
@@ -38,8 +45,8 @@ impl Loaded {
         }
         let placement = setup.placement().map(<[TransformStep]>::to_vec);
         let home = placement.clone().map(|steps| home(&setup, &steps));
-        let film = setup.film.clone();
-        Ok(Self { setup, settings, film, placement: placement.ok(), home })
+        let (film, medium) = (setup.film.clone(), setup.scene.media_map.sensor);
+        Ok(Self { setup, settings, film, placement: placement.ok(), medium, home })
     }
 
     /// How wide the image is, so far from the camera (m).
@@ -65,7 +72,8 @@ impl Loaded {
         let Location { file, position } = self.setup.location();
         let spelling = if matches!(position, Position::Text { .. }) { Spelling::Xml } else { Spelling::Json };
         let location = Location { file: Arc::clone(file), position: Position::Path("$".to_owned()) };
-        let value = Value::Transform(camera.rounded());
+        let sharpness = self.breadth_at(camera.distance().min(1.0)) / f64::from(self.film.width);
+        let value = Value::Transform(camera.rounded(sharpness));
         format::transform(&Property { name: "to_world".to_owned(), value, location }, spelling)
     }
 }

@@ -17,11 +17,11 @@ use super::{
     scene::{Scene, threads},
 };
 use crate::{error::Result, format, settings::Overrides};
-use board::Board;
+use board::{Board, Wish};
 use clap::Args;
 use painter::Painter;
 use server::Server;
-use std::{num::NonZeroUsize, thread};
+use std::{num::NonZeroUsize, thread, time::SystemTime};
 use watch::Watch;
 
 /// Look at a scene in a browser.
@@ -66,10 +66,14 @@ impl Arguments {
 /// Runs the command until a signal ends it.
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let board = Board::new(arguments.display);
+    let began = SystemTime::now();
     let mut painter = Painter::new(arguments, &board)?;
     let (pool, server) = (threads(arguments.threads)?, Server::new(arguments.port)?);
     // What comes through a pipe cannot be read again.
     let watch = (!format::is_standard_input(&arguments.scene.file)).then(Watch::new);
+    if watch.as_ref().is_some_and(|watch| watch.is_newer(began)) {
+        board.wish([Wish::Reload]);
+    }
     interrupt::listen();
     print(&server.address());
     thread::scope(|scope| {

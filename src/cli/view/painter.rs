@@ -68,6 +68,8 @@ pub(super) struct Painter<'a> {
     sums: Option<AnySums>,
     /// How many times as wide the pixels of quick pictures are.
     quick: u32,
+    /// The camera is where it cannot be built.
+    is_lost: bool,
 }
 
 impl<'a> Painter<'a> {
@@ -75,7 +77,7 @@ impl<'a> Painter<'a> {
     pub(super) fn new(arguments: &'a Arguments, board: &'a Board) -> Result<Self> {
         let loaded = Loaded::new(arguments)?;
         let camera = loaded.home.clone().ok();
-        Ok(Self { arguments, board, loaded, camera, stage: 0, sums: None, quick: 4 })
+        Ok(Self { arguments, board, loaded, camera, stage: 0, sums: None, quick: 4, is_lost: false })
     }
 
     /// Paints until the program ends.
@@ -88,9 +90,14 @@ impl<'a> Painter<'a> {
             };
             match self.make(*stage) {
                 Ok(()) if *stage != Stage::Quick && is_stale() => {}
-                Ok(()) => (self.stage, self.sums) = (self.stage + 1, None),
+                Ok(()) => {
+                    (self.stage, self.sums) = (self.stage + 1, None);
+                    if std::mem::take(&mut self.is_lost) {
+                        self.board.tell(None);
+                    }
+                }
                 Err(error) => {
-                    self.stage = STAGES.len();
+                    (self.stage, self.is_lost) = (STAGES.len(), true);
                     self.fail(&error);
                 }
             }
@@ -101,6 +108,7 @@ impl<'a> Painter<'a> {
     fn obey(&mut self) {
         for wish in self.board.take_wishes() {
             match wish {
+                _ if interrupt::came() => return,
                 Wish::Reload => self.reload(),
                 _ => self.follow(wish),
             }
@@ -115,10 +123,13 @@ impl<'a> Painter<'a> {
     /// Reads the scene again. The camera stays where it was moved to, unless the scene places its own elsewhere now. Of a
     /// scene with a mistake, the picture stays.
     fn reload(&mut self) {
+        self.is_lost = false;
         match Loaded::new(self.arguments) {
             Ok(loaded) => {
-                let stays = loaded.home.is_ok() && loaded.placement == self.loaded.placement;
-                if !(stays && self.camera.is_some()) {
+                let is_alike =
+                    |home: &Camera| self.camera.as_ref().is_some_and(|camera| camera.is_like(home));
+                let stays = loaded.home.as_ref().is_ok_and(is_alike);
+                if !(stays && loaded.placement == self.loaded.placement) {
                     self.camera = loaded.home.clone().ok();
                 }
                 self.loaded = loaded;
@@ -201,8 +212,12 @@ impl<'a> Painter<'a> {
 
     /// Puts the camera where it is wished, and `film` into it.
     fn look(&mut self, film: Film) -> Result<()> {
-        let steps = self.camera.as_ref().map(Camera::steps);
-        steps.map_or(Ok(()), |steps| self.loaded.setup.look(&steps, film))
+        let Some(camera) = &self.camera else { return Ok(()) };
+        self.loaded.setup.look(&camera.steps(), film)?;
+        if self.loaded.home.as_ref().is_ok_and(|home| camera.is_at(home)) {
+            self.loaded.setup.enter(self.loaded.medium);
+        }
+        Ok(())
     }
 
     /// Paints so many samples of each pixel of `film`, as the scene or the user wants them made; shows them from `least` on.

@@ -1,11 +1,10 @@
 //! The scene's files, and when they were saved.
 
 use super::board::{Board, Wish};
-use crate::inputs;
+use crate::inputs::{self, Stamp};
 use std::{
     collections::BTreeMap,
-    fs,
-    path::{Path, PathBuf},
+    path::PathBuf,
     thread,
     time::{Duration, SystemTime},
 };
@@ -15,16 +14,18 @@ const EVERY: Duration = Duration::from_millis(500);
 /// Time between two questions whether it is over.
 const NAP: Duration = Duration::from_millis(50);
 
-/// When a file was written, and its bytes; none of one that is not there.
-type Stamp = Option<(SystemTime, u64)>;
-
 /// What is known of the files that were read.
-pub(super) struct Watch(BTreeMap<PathBuf, Stamp>);
+pub(super) struct Watch(BTreeMap<PathBuf, Option<Stamp>>);
 
 impl Watch {
     /// As they are now.
     pub(super) fn new() -> Self {
-        Self(inputs::all().into_iter().map(|path| (path.clone(), stamp(&path))).collect())
+        Self(inputs::all().into_iter().map(|path| (path.clone(), inputs::stamp(&path))).collect())
+    }
+
+    /// True if a file was written after `time`, when reading began.
+    pub(super) fn is_newer(&self, time: SystemTime) -> bool {
+        self.0.values().flatten().any(|stamp| stamp.written > time)
     }
 
     /// Wishes that the scene be read again whenever one of its files was written, until it `is_over`.
@@ -42,22 +43,18 @@ impl Watch {
     fn has_changed(&mut self) -> bool {
         let now = Self::new();
         let is_other =
-            |(path, stamp): (&PathBuf, &Stamp)| now.0.get(path).is_some_and(|found| found != stamp);
+            |(path, stamp): (&PathBuf, &Option<Stamp>)| now.0.get(path).is_some_and(|found| found != stamp);
         let has_changed = self.0.iter().any(is_other);
         *self = now;
         has_changed
     }
 }
 
-fn stamp(path: &Path) -> Stamp {
-    let found = fs::metadata(path).ok()?;
-    Some((found.modified().ok()?, found.len()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::inputs::Reader;
+    use std::fs;
 
     #[test]
     fn a_file_that_is_written_or_removed_is_news_once() {
@@ -65,8 +62,9 @@ mod tests {
         let [first, second] = ["a.json", "b.json"].map(|name| folder.path().join(name));
         fs::write(&first, "1").unwrap();
         inputs::note(&first, Reader::Scene);
-        let mut watch = Watch(BTreeMap::from([(first.canonicalize().unwrap(), stamp(&first))]));
+        let mut watch = Watch(BTreeMap::from([(first.canonicalize().unwrap(), inputs::stamp(&first))]));
         assert!(!watch.has_changed());
+        assert!(watch.is_newer(SystemTime::UNIX_EPOCH) && !watch.is_newer(SystemTime::now() + EVERY));
         fs::write(&first, "12").unwrap();
         assert!(watch.has_changed() && !watch.has_changed());
         fs::write(&second, "1").unwrap();

@@ -7,7 +7,10 @@ use crate::{
     film::Film,
     math::{Vec2, Vec3, vec2},
     medium::MediumIndex,
-    scene::sensors::{sensors, without_sensor},
+    scene::{
+        memo::Memo,
+        sensors::{sensors, without_sensor},
+    },
     sensor::{self, Crop, Sensor, Site},
 };
 use std::collections::HashMap;
@@ -58,12 +61,14 @@ impl Setup {
         let start = sensor.ray(middle(&film), Vec2::ZERO).ray.origin;
         let medium = self.scene.medium_at(start).unwrap_or(self.scene.media_map.outside);
         (self.scene.sensor, self.scene.crop, self.film) = (sensor, crop, film);
+        // What was learnt for a camera elsewhere is not true of this one.
+        (self.scene.lights.learnt, self.scene.lights.endings) = (Memo::default(), Memo::default());
         self.enter(medium);
         Ok(())
     }
 
     /// Has the camera in `medium`, which is no longer one that only light at surfaces gets out of.
-    fn enter(&mut self, medium: MediumIndex) {
+    pub fn enter(&mut self, medium: MediumIndex) {
         self.scene.media_map.sensor = medium;
         self.scene.media_map.shut_in[medium.0 as usize] = false;
     }
@@ -150,7 +155,9 @@ mod tests {
                 .replace("[0, 0, 5]", origin)
                 .replace("target\": [0, 0, 0]", &format!("target\": {target}"));
             let built = setup(&there).unwrap();
+            moved.scene.lights.endings.keep("of another camera".to_owned(), 1u32);
             moved.look(built.placement().unwrap(), moved.film.clone()).unwrap();
+            assert_eq!(moved.scene.lights.endings.known::<u32>("of another camera"), None);
             assert_eq!(moved.scene.media_map.sensor, built.scene.media_map.sensor, "{origin}");
             let seen = |setup: &Setup| {
                 let point = DVec3::new(0.1, 0.2, -2.0) - setup.scene.recentre;
