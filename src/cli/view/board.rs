@@ -19,7 +19,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// No gesture is larger than this: a hand makes many small ones.
 const LARGEST: f64 = 100.0;
 
-/// Of the process, as what budgets ask has no place for more.
+/// Of the process: a budget asks a plain function.
 static STALE: AtomicBool = AtomicBool::new(false);
 
 /// True once the picture in progress is not the one that is wished.

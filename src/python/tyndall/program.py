@@ -43,7 +43,7 @@ def clones() -> list[Path]:
 
 
 def environment() -> dict[str, str]:
-    """That of the program: its words are read, so they have no colours, which notebooks ask for; what it needs Python for is here."""
+    """That of the program. Its words are read, so they have no colours, which notebooks ask for. It denoises by this Python."""
     return {"TYNDALL_PYTHON": sys.executable, **os.environ, "NO_COLOR": "1"}
 
 
