@@ -3,7 +3,7 @@
 
 use crate::error::{Error, Result};
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     fs::{self, Metadata},
     path::{Path, PathBuf},
     sync::{Mutex, MutexGuard, PoisonError},
@@ -28,8 +28,8 @@ impl Reader {
     }
 }
 
-/// As the file was named, and what reads it.
-type Input = (PathBuf, Reader);
+/// As the file was named, what reads it, and its stamp when it was noted first.
+type Input = (PathBuf, Reader, Option<Stamp>);
 
 /// By the names that all spellings of a path share.
 type Inputs = BTreeMap<PathBuf, Input>;
@@ -41,12 +41,22 @@ fn read() -> MutexGuard<'static, Inputs> {
     READ.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Notes that `reader` reads the plain file at `path`, if there is one.
+/// Where a file was to be read, and none was.
+static MISSED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn missed() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    MISSED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Notes that `reader` reads the plain file at `path`, or would if there were one.
 pub fn note(path: &Path, reader: Reader) {
-    if let Ok(at) = path.canonicalize()
-        && at.is_file()
-    {
-        read().entry(at).or_insert_with(|| (path.to_owned(), reader));
+    match path.canonicalize() {
+        Ok(at) if at.is_file() => {
+            let stamp = stamp(&at);
+            read().entry(at).or_insert_with(|| (path.to_owned(), reader, stamp));
+        }
+        Ok(_) => {}
+        Err(_) => missed().extend(std::path::absolute(path)),
     }
 }
 
@@ -65,9 +75,11 @@ pub fn stamp(path: &Path) -> Option<Stamp> {
     Some(Stamp { written: found.modified().ok()?, bytes: found.len() })
 }
 
-/// The files that were noted so far, by the names that all spellings of a path share.
-pub fn all() -> Vec<PathBuf> {
-    read().keys().cloned().collect()
+/// The files that were noted so far, by the names that all spellings of a path share, and where one was missed; with their
+/// stamps when they were noted first.
+pub fn all() -> Vec<(PathBuf, Option<Stamp>)> {
+    let found: Vec<_> = read().iter().map(|(path, (.., stamp))| (path.clone(), *stamp)).collect();
+    found.into_iter().chain(missed().iter().map(|path| (path.clone(), None))).collect()
 }
 
 /// An error if `path`, links followed, is a file that is read, another name of one (a hard link), or a folder that holds
@@ -76,7 +88,7 @@ pub fn guard(path: &Path) -> Result<()> {
     let Ok(at) = path.canonicalize() else { return Ok(()) };
     match found(&at) {
         None => Ok(()),
-        Some((name, reader)) => Err(refusal(path, &name, reader)),
+        Some((name, reader, _)) => Err(refusal(path, &name, reader)),
     }
 }
 
@@ -134,8 +146,10 @@ mod tests {
             fs::write(at(name), "").unwrap();
         }
         note(&at("x/y/sky.exr"), Reader::Scene);
-        assert!(all().contains(&at("x/y/sky.exr").canonicalize().unwrap()));
+        let sky = at("x/y/sky.exr").canonicalize().unwrap();
+        assert!(all().contains(&(sky.clone(), stamp(&sky))));
         note(&at("none.exr"), Reader::Scene);
+        assert!(all().contains(&(at("none.exr"), None)) && guard(&at("none.exr")).is_ok());
         note(&at("x"), Reader::Command);
         #[cfg(unix)]
         {

@@ -201,10 +201,6 @@ fn question(arguments: &Study, contenders: Vec<Contender>, threads: usize) -> Re
             fingerprint: fingerprint_of(&format::sources(file, &arguments.definitions, None)?)?,
         })
     };
-    let effort = match (arguments.spp, arguments.seconds) {
-        (Some(spp), _) => Effort::Samples(u64::from(spp)),
-        (None, seconds) => Effort::Seconds(seconds.map_or(SECONDS, |seconds| seconds.as_secs_f64())),
-    };
     Ok(Question {
         program: provenance::program(),
         scenes: names.into_iter().zip(&arguments.scenes).map(scene).collect::<Result<_>>()?,
@@ -215,9 +211,17 @@ fn question(arguments: &Study, contenders: Vec<Contender>, threads: usize) -> Re
         seeds: u64::from(arguments.seeds),
         first_seed: arguments.seed,
         doublings: arguments.doublings,
-        effort,
+        effort: effort(arguments),
         threads,
     })
+}
+
+/// The largest budget.
+fn effort(arguments: &Study) -> Effort {
+    match (arguments.spp, arguments.seconds) {
+        (Some(spp), _) => Effort::Samples(u64::from(spp)),
+        (None, seconds) => Effort::Seconds(seconds.map_or(SECONDS, |seconds| seconds.as_secs_f64())),
+    }
 }
 
 /// Of all that a scene is read from.
@@ -349,7 +353,14 @@ impl<'a> Stage<'a> {
         let (setup, load_seconds) = self.setup(scene, overrides)?;
         let (settings, head) = Head::of(&setup.scene, || {
             let started = Instant::now();
-            let (settings, chosen) = requested.chosen(&setup, 0, Budget::ENDLESS)?;
+            // As a render of the largest budget has it.
+            let most = match effort(self.arguments) {
+                Effort::Samples(each) => Budget::samples(each),
+                Effort::Seconds(seconds) => {
+                    Budget { time: Some(Duration::from_secs_f64(seconds)), ..Budget::ENDLESS }
+                }
+            };
+            let (settings, chosen) = requested.chosen(&setup, 0, most)?;
             let budget = Budget { spent: started.elapsed(), ..settings.budget };
             let settings = Settings { budget, ..settings };
             Ok((settings, Plan::new(&setup, settings, chosen, None).words()))

@@ -491,18 +491,25 @@ fn least_seconds(csv: &str, contender: &str) -> f64 {
 #[test]
 fn pilots_and_learning_are_among_the_seconds() {
     let desk = Desk::new(&[("room.json", foggy_room())]);
-    let words = "room.json -o out --spp 1 --doublings 1 --seeds 4 --reference-spp 16 --threads 1";
+    let words = "room.json -o out --spp 512 --doublings 9 --seeds 4 --reference-spp 16 --threads 1";
+    let few = "room.json -o short --spp 1 --doublings 1 --seeds 4 --reference-spp 16 --threads 1";
     let all = "--strategies hit,next-event,join,lens";
     let contenders = ["bare: --integrator bdpt", "guided: --integrator bdpt --guide always"]
         .map(|words| format!("{words} {all}"));
-    let mut words: Vec<&str> = words.split(' ').collect();
-    for contender in contenders.iter().map(String::as_str).chain(["piloted: --integrator bdpt"]) {
-        words.extend(["--contender", contender]);
-    }
-    desk.study(&words);
+    let [long, short] = [words, few].map(|words| {
+        let contenders = contenders.iter().map(String::as_str).chain(["piloted: --integrator bdpt"]);
+        let named = contenders.flat_map(|contender| ["--contender", contender]);
+        words.split(' ').chain(named).collect::<Vec<_>>()
+    });
+    desk.study(&long);
     let csv = fs::read_to_string(desk.path("out/study.csv")).unwrap();
     let [bare, guided, piloted] = ["bare", "guided", "piloted"].map(|name| least_seconds(&csv, name));
     assert!(guided > 4.0 * bare && piloted > 4.0 * bare, "{bare} {guided} {piloted}");
+    // A render of one sample has no pilot either.
+    desk.study(&short);
+    let csv = fs::read_to_string(desk.path("short/study.csv")).unwrap();
+    let [bare, piloted] = ["bare", "piloted"].map(|name| least_seconds(&csv, name));
+    assert!(piloted < 4.0 * bare, "{bare} {piloted}");
     let outcome = desk.json("out/study.json");
     let contenders = outcome["scenes"][0]["contenders"].as_array().unwrap();
     let [bare, guided, piloted] =

@@ -311,3 +311,74 @@ fn what_cannot_be_viewed_is_refused_and_what_cannot_be_moved_says_so() {
         seen.camera()
     );
 }
+
+/// A window beside the camera's axis.
+#[test]
+fn a_window_turns_about_what_is_in_its_middle() {
+    let mut sensor = camera(ORIGIN, [0.0; 3], 64);
+    sensor["fov"] = json!(90);
+    for (name, value) in [("crop_width", 32), ("crop_height", 64), ("crop_offset_x", 0), ("crop_offset_y", 0)]
+    {
+        sensor["film"][name] = json!(value);
+    }
+    let at = json!([{"type": "translate", "value": [-1.5, 0, 0]}]);
+    let ball = json!({"type": "sphere", "radius": 0.5, "bsdf": diffuse(rgb(0.8, 0.1, 0.1)), "to_world": at});
+    let sandbox = Sandbox::with_scene(&scene(&[("sensor", sensor), ("ball", ball), ("sky", sky(1.0))]));
+    let server = Server::start(&sandbox, "scene.json --view linear");
+    let red = |picture: &Picture| picture.middle()[0] > 2 * picture.middle()[1];
+    let before = server.picture(0, |picture| picture.is_whole() && red(picture));
+    server.wish(&json!(["grip", {"orbit": [-0.25, 0.0]}]));
+    let after =
+        server.picture(before.number(), |picture| picture.is_whole() && picture.camera() != before.camera());
+    assert!(red(&after), "{:?} {}", after.middle(), after.camera());
+}
+
+#[test]
+fn a_file_that_was_missed_is_waited_for() {
+    let textured = ball(ORIGIN, json!({"type": "bitmap", "filename": "green.png"})).to_string();
+    let sandbox = Sandbox::with_scene(&ball(ORIGIN, rgb(0.8, 0.1, 0.1)));
+    let server = Server::start(&sandbox, "scene.json --view linear");
+    let red = server.picture(0, Picture::is_whole);
+    fs::write(sandbox.path("scene.json"), textured).unwrap();
+    let missed = server.picture(red.number(), |picture| picture.head["error"] != Value::Null);
+    assert!(missed.head["error"].as_str().unwrap().contains("green.png"), "{}", missed.head);
+    image::RgbImage::from_pixel(2, 2, image::Rgb([20, 220, 20])).save(sandbox.path("green.png")).unwrap();
+    let green = server.picture(missed.number(), |picture| picture.is_whole() && picture.middle()[1] > 100);
+    assert_eq!(green.head["error"], Value::Null);
+}
+
+/// A `.vol` file of 2 x 2 x 2 voxels in a cube of such a `side` (m).
+fn cube_of_fog(side: f32) -> Vec<u8> {
+    let counts = [1i32, 2, 2, 2, 1].iter().flat_map(|count| count.to_le_bytes());
+    let corners = [0.0, 0.0, 0.0, side, side, side];
+    let numbers = corners.iter().chain(&[1.0f32; 8]).flat_map(|x| x.to_le_bytes());
+    b"VOL\x03".iter().copied().chain(counts).chain(numbers).collect()
+}
+
+#[test]
+fn a_volume_file_is_framed_again_when_it_is_written() {
+    let sandbox = Sandbox::with_files(&[]);
+    let write = |side: f32| fs::write(sandbox.path("fog.vol"), cube_of_fog(side)).unwrap();
+    write(1.0);
+    let server = Server::start(&sandbox, "fog.vol --size 24x24");
+    let small = server.picture(0, |_| true);
+    write(4.0);
+    server.picture(small.number(), |picture| picture.camera() != small.camera());
+}
+
+#[test]
+fn nobody_waits_for_a_reader_who_fell_silent() {
+    let sandbox = Sandbox::with_scene(&ball(ORIGIN, rgb(0.8, 0.1, 0.1)));
+    // More than what a system keeps for a reader.
+    let server = Server::start(&sandbox, "scene.json --size 2400x2400");
+    let size = br#""size":[2400,2400]"#;
+    let started = Instant::now();
+    while !server.get("picture?after=0").body.windows(size.len()).take(2000).any(|text| text == size) {
+        assert!(started.elapsed() < Duration::from_secs(60), "no picture came");
+    }
+    let mut silent = TcpStream::connect(server.host()).unwrap();
+    let path = format!("/{}/picture?after=0", server.token);
+    write!(silent, "GET {path} HTTP/1.1\r\nHost: {}\r\n\r\n", server.host()).unwrap();
+    silent.read_exact(&mut [0]).unwrap();
+    assert_eq!(server.end("-INT").0, Some(130));
+}

@@ -62,11 +62,15 @@ def begin(job: Job, crops: list[str]) -> list[str]:
     return there
 
 
+CHOSEN = ("chosen_by_pilot", "guide", "basis", "learnt_starts", "sky")
+"""What decides about noise alone: parts may differ in it, as `merge` allows."""
+
+
 def settings(path: Path) -> dict[str, Any]:
     """How a picture is made, whichever part of it."""
     found: dict[str, Any] = info(path)["settings"]
     del found["film"]["window"]
-    return found
+    return {name: value for name, value in found.items() if name not in CHOSEN}
 
 
 def tell(job: Job, there: list[str], crops: list[str]) -> None:

@@ -24,7 +24,7 @@ pub(super) struct Camera {
     /// Unit vectors, across each other.
     forward: DVec3,
     up: DVec3,
-    /// How far the pivot is, straight ahead (m).
+    /// How far the pivot is, in the middle of the image (m).
     distance: f64,
     /// What is up in the scene, whichever way the camera is turned.
     zenith: DVec3,
@@ -32,6 +32,20 @@ pub(super) struct Camera {
     scale: DVec3,
     /// Its rays are parallel.
     is_parallel: bool,
+    /// What its film makes of it.
+    frame: Frame,
+}
+
+/// Where the image is, which a crop window or an offset of the principal point moves out of the camera's axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Frame {
+    /// The point nearest to the camera's position on the line in the middle of the image, from there, in the scene's coordinates
+    /// (m).
+    pub origin: DVec3,
+    /// The direction of that line, there too: a unit vector.
+    pub direction: DVec3,
+    /// How wide the image is at a distance of 1 m; of parallel rays, at any distance (m).
+    pub breadth: f64,
 }
 
 impl Camera {
@@ -44,7 +58,20 @@ impl Camera {
         let (forward, up) = (forward.normalize(), up.normalize());
         let zenith = nearest_axis(stated_up(steps).unwrap_or(up));
         let position = matrix.transform_point3(DVec3::ZERO);
-        Self { position, forward, up, distance: 1.0, zenith, scale, is_parallel }
+        let frame = Frame { origin: DVec3::ZERO, direction: DVec3::Z, breadth: 1.0 };
+        Self { position, forward, up, distance: 1.0, zenith, scale, is_parallel, frame }
+    }
+
+    /// Has the image where `frame` says that this camera sees it.
+    pub(super) fn frame(&mut self, Frame { origin, direction, breadth }: Frame) {
+        let own = |way: DVec3| DVec3::new(way.dot(self.left()), way.dot(self.up), way.dot(self.forward));
+        let breadth = if self.is_parallel { breadth / self.scale.x.abs() } else { breadth };
+        self.frame = Frame { origin: own(origin) / self.scale, direction: own(direction), breadth };
+    }
+
+    /// How wide the image is at such a `distance` from the camera (m).
+    pub(super) fn breadth_at(&self, distance: f64) -> f64 {
+        self.frame.breadth * if self.is_parallel { self.scale.x.abs() } else { distance }
     }
 
     /// Has the pivot so far ahead (m).
@@ -54,7 +81,18 @@ impl Camera {
 
     /// What it turns about.
     pub(super) fn pivot(&self) -> DVec3 {
-        self.position + self.distance * self.forward
+        let Frame { origin, direction, .. } = self.frame;
+        self.position + self.turned(self.scale * origin + self.distance * direction)
+    }
+
+    /// Puts the pivot there, whatever became of the camera about it.
+    fn hold(&mut self, pivot: DVec3) {
+        self.position += pivot - self.pivot();
+    }
+
+    /// A vector in its own axes, none of them scaled, in those of the scene.
+    fn turned(&self, own: DVec3) -> DVec3 {
+        own.x * self.left() + own.y * self.up + own.z * self.forward
     }
 
     /// Turns about the pivot as the pointer drags what is seen: so many widths of the image to the right, and down. A width
@@ -70,7 +108,7 @@ impl Camera {
         // Across it again: rounding adds up over a long way.
         let up = turn.transform_vector3(self.up);
         self.up = (up - up.dot(self.forward) * self.forward).normalize();
-        self.position = pivot - self.distance * self.forward;
+        self.hold(pivot);
     }
 
     /// Moves sideways with the pivot, so that what is seen goes so many metres to the right, and down.
@@ -80,20 +118,20 @@ impl Camera {
 
     /// Comes nearer to the pivot: so many times by the factor e. Parallel rays come closer together, and begin where they did.
     pub(super) fn dolly(&mut self, times: f64) {
+        let pivot = self.pivot();
         if self.is_parallel {
             let wide = self.scale.x.abs();
             let factor = (wide * (-times).exp()).clamp(SCALES[0], SCALES[1]) / wide;
             self.scale *= DVec3::new(factor, factor, 1.0);
-            return;
+        } else {
+            self.grip(self.distance * (-times).exp());
         }
-        let pivot = self.pivot();
-        self.grip(self.distance * (-times).exp());
-        self.position = pivot - self.distance * self.forward;
+        self.hold(pivot);
     }
 
     /// Goes ahead with the pivot: so many times the way to there.
     pub(super) fn walk(&mut self, times: f64) {
-        self.position += times * self.distance * self.forward;
+        self.position += times * self.distance * self.turned(self.frame.direction);
     }
 
     /// How far the pivot is (m).
@@ -121,8 +159,9 @@ impl Camera {
         self.is_parallel == other.is_parallel
     }
 
-    /// The same in as few digits as place it, where a pixel is `sharpness` wide (m).
-    pub(super) fn rounded(&self, sharpness: f64) -> Vec<TransformStep> {
+    /// The same in as few digits as place it, where the image is so many pixels wide.
+    pub(super) fn rounded(&self, pixels: u32) -> Vec<TransformStep> {
+        let sharpness = self.breadth_at(self.distance.min(1.0)) / f64::from(pixels);
         // Half of the last digit is what rounding moves by.
         let digits = (-(2.0 * UNSEEN * sharpness).log10()).ceil().clamp(DIGITS[0], DIGITS[1]) as usize;
         self.spelled(|x| format!("{x:.digits$}").parse().map_or(x, |x: f64| x + 0.0))
@@ -130,7 +169,8 @@ impl Camera {
 
     fn spelled(&self, spell: impl Fn(f64) -> f64) -> Vec<TransformStep> {
         let spelled = |point: DVec3| point.to_array().map(&spell);
-        let (origin, target) = (spelled(self.position), spelled(self.pivot()));
+        let target = self.position + self.distance * self.forward;
+        let (origin, target) = (spelled(self.position), spelled(target));
         let is_level = self.left().dot(self.zenith).abs() < 1e-9 && self.up.dot(self.zenith) > 0.0;
         let up = if is_level { self.zenith.to_array() } else { self.up.to_array() };
         let scale = (!self.is_plain()).then(|| TransformStep::Scale(self.scale.to_array().map(significant)));
@@ -247,7 +287,7 @@ mod tests {
             camera.grip(12.0);
             assert!(compose(&camera.steps()).abs_diff_eq(compose(&steps), 1e-9), "{steps:?}: {camera:?}");
             assert!(
-                compose(&camera.rounded(0.01)).abs_diff_eq(compose(&steps), 1e-3),
+                compose(&camera.rounded(100)).abs_diff_eq(compose(&steps), 1e-3),
                 "{steps:?}: {camera:?}"
             );
             camera.orbit([0.3, -0.1]);
@@ -293,8 +333,8 @@ mod tests {
         camera.orbit([0.1, 0.0]);
         let expected =
             TransformStep::LookAt { origin: [-1.5451, 0.0, 4.7553], target: [0.0; 3], up: [0.0, 1.0, 0.0] };
-        assert_eq!(camera.rounded(0.01), [expected]);
-        let TransformStep::LookAt { origin, .. } = camera.rounded(1e-5)[0] else { panic!() };
+        assert_eq!(camera.rounded(100), [expected]);
+        let TransformStep::LookAt { origin, .. } = camera.rounded(100_000)[0] else { panic!() };
         assert_eq!(origin, [-1.545085, 0.0, 4.755283]);
     }
 
@@ -306,5 +346,32 @@ mod tests {
         assert!(near(camera.scale, [-1.0, 1.5, 1.0]) && near(camera.position, [0.0, 0.0, 5.0]), "{camera:?}");
         camera.dolly(1e300);
         assert!(camera.scale.x < 0.0 && camera.scale.x > -1e-5, "{camera:?}");
+    }
+
+    /// A window in a corner of the film looks elsewhere than the camera does.
+    #[test]
+    fn what_is_in_the_middle_of_the_image_stays_there() {
+        let aside = DVec3::new(0.6, -0.3, -1.0).normalize();
+        for is_parallel in [false, true] {
+            let looks = TransformStep::LookAt {
+                origin: [1.0, 2.0, 5.0],
+                target: [1.0, 2.0, 0.0],
+                up: [0.0, 1.0, 0.0],
+            };
+            let mut camera = Camera::placed(&[TransformStep::Scale([-2.0, 2.0, 1.0]), looks], is_parallel);
+            let (origin, direction) =
+                if is_parallel { (DVec3::new(0.5, 0.25, 0.0), DVec3::NEG_Z) } else { (DVec3::ZERO, aside) };
+            camera.frame(Frame { origin, direction, breadth: 3.0 });
+            camera.grip(4.0);
+            let pivot = camera.pivot();
+            assert!(near(pivot, (camera.position + origin + 4.0 * direction).to_array()), "{pivot}");
+            assert!((camera.breadth_at(2.0) - if is_parallel { 3.0 } else { 6.0 }).abs() < 1e-12);
+            camera.orbit([0.2, 0.1]);
+            camera.dolly(0.7);
+            assert!(near(pivot, camera.pivot().to_array()), "{pivot} {camera:?}");
+            camera.walk(1.0);
+            let gone = camera.pivot() - pivot;
+            assert!((gone.length() - camera.distance).abs() < 1e-9, "{gone}");
+        }
     }
 }

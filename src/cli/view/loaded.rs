@@ -1,6 +1,9 @@
 //! A scene as it was read, and how it is to be rendered.
 
-use super::{Arguments, camera::Camera};
+use super::{
+    Arguments,
+    camera::{Camera, Frame},
+};
 use crate::{
     cli::scene,
     description::{Location, Position, Property, TransformStep, Value},
@@ -49,12 +52,6 @@ impl Loaded {
         Ok(Self { setup, settings, film, placement: placement.ok(), medium, home })
     }
 
-    /// How wide the image is, so far from the camera (m).
-    pub(super) fn breadth_at(&self, distance: f64) -> f64 {
-        let breadth = self.setup.breadth();
-        if self.setup.scene.sensor.is_parallel() { breadth } else { breadth * distance }
-    }
-
     /// The lines of a scene file that place `camera`, and true; or why nothing moves it.
     pub(super) fn lines(&self, camera: Option<&Camera>) -> (String, bool) {
         let lines = match (camera, &self.home) {
@@ -72,8 +69,7 @@ impl Loaded {
         let Location { file, position } = self.setup.location();
         let spelling = if matches!(position, Position::Text { .. }) { Spelling::Xml } else { Spelling::Json };
         let location = Location { file: Arc::clone(file), position: Position::Path("$".to_owned()) };
-        let sharpness = self.breadth_at(camera.distance().min(1.0)) / f64::from(self.film.width);
-        let value = Value::Transform(camera.rounded(sharpness));
+        let value = Value::Transform(camera.rounded(self.film.width));
         format::transform(&Property { name: "to_world".to_owned(), value, location }, spelling)
     }
 }
@@ -81,6 +77,8 @@ impl Loaded {
 /// The camera that `steps` place in a scene, turning about what is in the middle of its image.
 fn home(setup: &Setup, steps: &[TransformStep]) -> Camera {
     let mut camera = Camera::placed(steps, setup.scene.sensor.is_parallel());
+    let (origin, direction) = setup.ahead();
+    camera.frame(Frame { origin, direction, breadth: setup.breadth() });
     let distance = setup.distance_ahead().or_else(|| setup.distance_to_middle());
     distance.into_iter().for_each(|distance| camera.grip(distance));
     camera

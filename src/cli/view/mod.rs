@@ -17,11 +17,11 @@ use super::{
     scene::{Scene, threads},
 };
 use crate::{error::Result, format, settings::Overrides};
-use board::{Board, Wish};
+use board::Board;
 use clap::Args;
 use painter::Painter;
 use server::Server;
-use std::{num::NonZeroUsize, thread, time::SystemTime};
+use std::{num::NonZeroUsize, sync::Arc, thread};
 use watch::Watch;
 
 /// Look at a scene in a browser.
@@ -65,15 +65,11 @@ impl Arguments {
 
 /// Runs the command until a signal ends it.
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    let board = Board::new(arguments.display);
-    let began = SystemTime::now();
+    let board = Arc::new(Board::new(arguments.display));
     let mut painter = Painter::new(arguments, &board)?;
     let (pool, server) = (threads(arguments.threads)?, Server::new(arguments.port)?);
     // What comes through a pipe cannot be read again.
-    let watch = (!format::is_standard_input(&arguments.scene.file)).then(Watch::new);
-    if watch.as_ref().is_some_and(|watch| watch.is_newer(began)) {
-        board.wish([Wish::Reload]);
-    }
+    let watch = (!format::is_standard_input(&arguments.scene.file)).then(Watch::default);
     interrupt::listen();
     print(&server.address());
     thread::scope(|scope| {
@@ -82,7 +78,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         watch.into_iter().for_each(|watch| {
             scope.spawn(|| watch.tell(&board, || board.is_closed()));
         });
-        server.serve(scope, &board, is_over);
+        server.serve(&board, is_over);
         board.close();
     });
     Ok(())

@@ -156,7 +156,7 @@ impl<'a> Painter<'a> {
             ahead.into_iter().for_each(|distance| camera.grip(distance));
             return;
         }
-        let breadth = self.loaded.breadth_at(camera.distance());
+        let breadth = camera.breadth_at(camera.distance());
         match wish {
             Wish::Orbit(way) => camera.orbit(way),
             Wish::Pan(way) => camera.pan(way.map(|part| part * breadth)),

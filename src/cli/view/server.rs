@@ -10,7 +10,8 @@ use serde_json::json;
 use std::{
     io::{Cursor, Read as _},
     net::{Ipv4Addr, SocketAddr},
-    thread::Scope,
+    sync::Arc,
+    thread,
     time::Duration,
 };
 use tiny_http::{Header, Method, Request, Response};
@@ -68,16 +69,14 @@ impl Server {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }
 
-    /// Answers, each question on a thread of its own, until it `is_over`.
-    pub(super) fn serve<'scope>(
-        &'scope self,
-        scope: &'scope Scope<'scope, '_>,
-        board: &'scope Board,
-        is_over: impl Fn() -> bool,
-    ) {
+    /// Answers, each question on a thread of its own, until it `is_over`. Nobody waits for these threads: a reader who fell
+    /// silent in the middle of an answer would keep the program from its end.
+    pub(super) fn serve(self, board: &Arc<Board>, is_over: impl Fn() -> bool) {
+        let server = Arc::new(self);
         while !is_over() {
-            if let Ok(Some(request)) = self.http.recv_timeout(NAP) {
-                scope.spawn(move || self.attend(request, board));
+            if let Ok(Some(request)) = server.http.recv_timeout(NAP) {
+                let (server, board) = (Arc::clone(&server), Arc::clone(board));
+                thread::spawn(move || server.attend(request, &board));
             }
         }
     }

@@ -5,13 +5,14 @@ use crate::{
     description::{Library, Location, Object, Property, TransformStep, Value},
     error::{Error, Result},
     film::Film,
-    math::{Vec2, Vec3, vec2},
+    math::{DVec3, Vec2, Vec3, vec2},
     medium::MediumIndex,
     scene::{
         memo::Memo,
         sensors::{sensors, without_sensor},
     },
     sensor::{self, Crop, Sensor, Site},
+    shape::Ray,
 };
 use std::collections::HashMap;
 
@@ -78,7 +79,14 @@ impl Setup {
     pub fn distance_ahead(&self) -> Option<f64> {
         let ray = self.scene.sensor.ray(middle(&self.film), Vec2::ZERO).ray;
         let met = self.scene.geometry.march(ray).find(|point| !self.scene.surface(point.shape).transmits)?;
-        Some(f64::from((met.position - self.scene.sensor.position()).length()))
+        Some(f64::from((met.position - self.scene.sensor.position()).dot(ray.direction)))
+    }
+
+    /// The line in the middle of the image: its point nearest to the camera's position, from there (m), and its direction.
+    pub fn ahead(&self) -> (DVec3, DVec3) {
+        let Ray { origin, direction, .. } = self.scene.sensor.ray(middle(&self.film), Vec2::ZERO).ray;
+        let aside = (origin - self.scene.sensor.position()).reject_from_normalized(direction);
+        (aside.as_dvec3(), direction.as_dvec3().normalize())
     }
 
     /// How far the middle of all shapes is from the camera (m); none in a scene without shapes, or with endless ones.
@@ -122,7 +130,7 @@ fn placed(camera: &Object, steps: &[TransformStep]) -> Object {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{format, math::DVec3, scene::build::build, settings::Overrides};
+    use crate::{format, scene::build::build, settings::Overrides};
 
     /// A ball of fog in vacuum, and a wall behind the fog.
     const SCENE: &str = r#"{"type": "scene",
