@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NoReturn
 
-from validation.places import ENVIRONMENT, REQUIREMENTS, REQUIREMENTS_DEV, ROOT
+from validation.places import ENVIRONMENT, REQUIREMENTS, REQUIREMENTS_CLUSTER, REQUIREMENTS_DEV, ROOT
 from validation.places import PYTHON as PACKAGE
 
 PYTHON = ENVIRONMENT / "bin" / "python"
@@ -55,7 +55,8 @@ def locked() -> Iterator[None]:
 
 def wanted_stamp() -> str:
     """Changes whenever the requirements or the interpreter do."""
-    return hashlib.sha256(REQUIREMENTS.read_bytes() + REQUIREMENTS_DEV.read_bytes() + sys.version.encode()).hexdigest()
+    files = (REQUIREMENTS, REQUIREMENTS_CLUSTER, REQUIREMENTS_DEV)
+    return hashlib.sha256(b"".join(map(Path.read_bytes, files)) + sys.version.encode()).hexdigest()
 
 
 def make() -> None:

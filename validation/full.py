@@ -7,9 +7,9 @@ from pathlib import Path
 
 from tyndall import program
 from tyndall.failure import Failure
-from validation import environment, matrix, package_tests, page, truths, viewing
+from validation import matrix, package_tests, page, truths, viewing
 from validation.compare import Effort
-from validation.places import CROSSCHECK, OUTPUT, REQUIREMENTS_CLUSTER
+from validation.places import CROSSCHECK, OUTPUT
 from validation.stability import run as stability
 
 TEXT = "Scenes against Mitsuba as it renders now, closed forms, stability and two pages in a browser, at full depth: about an hour of two cores."
@@ -18,7 +18,7 @@ TEXT = "Scenes against Mitsuba as it renders now, closed forms, stability and tw
 def run() -> bool:
     """Runs every part, whatever the others find; true if all hold."""
     parts: dict[str, Callable[[], bool]] = {
-        "package": package,
+        "package": package_tests.run,
         "page in a browser": study_page,
         "view in a browser": lambda: viewing.run(OUTPUT / "view", if_possible=True),
         "closed forms": lambda: truths.run(Effort(batches=16, spp=512)),
@@ -44,12 +44,6 @@ def timed(name: str, part: Callable[[], bool]) -> tuple[bool, float]:
         print(failure, flush=True)
         holds = False
     return holds, time.perf_counter() - start
-
-
-def package() -> bool:
-    """The tests of this package, those that need Dask too."""
-    environment.extra(REQUIREMENTS_CLUSTER)
-    return package_tests.run()
 
 
 def study_page() -> bool:

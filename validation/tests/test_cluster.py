@@ -24,7 +24,7 @@ from validation import cli as whole_cli
 from validation import environment
 from validation.cluster import cli, farm, locked, parts, render, study, task, tiles
 from validation.cluster.job import Job, job
-from validation.cluster.sums import Sums
+from validation.cluster.sums import Sums, info
 from validation.places import CROSSCHECK, ROOT, SCENES
 
 ROOM = CROSSCHECK / "cube_in_room.json"
@@ -229,7 +229,8 @@ def test_an_image_is_cut_into_parts_that_hold_every_pixel_once() -> None:
 
 
 def test_a_picture_to_an_error_is_cut_into_parts_of_the_image(client: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["--size", "24x18", "--error", "0.5", "--threads", "1"]
+    # Without a pilot: one for the two samples of the attempt below would choose otherwise.
+    words = ["--size", "24x18", "--error", "0.5", "--threads", "1", "--strategies", "hit,next-event,join,lens"]
     picture = job(str(ROOM), tmp_path / "a.exr", words, None, None)
     assert picture.spp == 0 and picture.size() == (24, 18)
     assert whole_cli.main(["cluster", "commands", str(ROOM), "-o", str(tmp_path / "b.exr"), "--parts", "4", *words]) == 0
@@ -245,6 +246,15 @@ def test_a_picture_to_an_error_is_cut_into_parts_of_the_image(client: Any, tmp_p
     told = capsys.readouterr().err
     assert "0 of 4 parts" not in told and "1 of 4 parts" in told and "4 of 4 parts" in told and not there.exists() and not picture.folder.exists()
     assert equal(picture.output, tmp_path / "b.exr") and exr.read(picture.output)["samples"]["N"].min() >= 32
+
+
+def test_parts_may_differ_in_what_a_pilot_chose(tmp_path: Path) -> None:
+    picture = job(str(ROOM), tmp_path / "a.exr", ["--size", "24x18", "--error", "0.5"], None, None)
+    picture.folder.mkdir()
+    program.call([*picture.tile("12x9+12+9"), "--sums", str(tiles.file(picture, "12x9+12+9"))])
+    assert tiles.begin(picture, ["12x9+12+9"]) == ["12x9+12+9"]
+    chosen = [info(path)["settings"]["chosen_by_pilot"] for path in (tiles.file(picture, "12x9+12+9"), picture.folder / "trial.sums")]
+    assert chosen[0] != chosen[1]
 
 
 def test_parts_of_another_picture_are_refused(tmp_path: Path) -> None:
