@@ -29,7 +29,7 @@ ENTRIES = FOLDER / "gallery.json"
 MEASURED = FOLDER / "measured.json"
 PAGE = SCENES / "GALLERY.md"
 TABLE = re.compile(r"(?<=<!-- gallery -->\n).*?(?=<!-- end -->)", re.DOTALL)
-PILOT = 16
+PILOT = 1
 """Samples per pixel by which Mitsuba's time is first known,"""
 FASTER = 16
 """more of them at most at a time, as the first ones take longer,"""
@@ -244,10 +244,11 @@ def animated(entry: Entry, threads: int, folder: Path) -> Measured:
 
 
 def shown_as(entry: Entry, image: Path, picture: Path) -> None:
-    """Mitsuba's picture through the exposure and the view transform of ours."""
-    words, png = entry.options, image.with_suffix(".png")
+    """Mitsuba's picture through the exposure and the view transform of ours, and denoised if that is."""
+    words, png = entry.options, image.with_suffix(".denoised.png" if entry.is_denoised else ".png")
     view = [word for at, word in enumerate(words) if VIEW & {word.partition("=")[0], *words[at - 1 : at]}]
-    program.call([str(program.binary()), "convert", str(image), str(png), *view])
+    made = ["denoise", str(image)] if entry.is_denoised else ["convert", str(image), str(png)]
+    program.call([str(program.binary()), *made, *view])
     keep(png, picture)
 
 

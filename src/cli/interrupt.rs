@@ -1,9 +1,13 @@
 //! Ctrl-C and its like: the first one asks a render to end in order, the second one ends the program at once.
 
 use signal_hook::{consts, flag};
-use std::sync::{
-    Arc, OnceLock,
-    atomic::{AtomicBool, AtomicUsize, Ordering},
+use std::{
+    sync::{
+        Arc, OnceLock,
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+    },
+    thread,
+    time::Duration,
 };
 
 /// The signals that end a render, and what they are called.
@@ -13,20 +17,29 @@ const SIGNALS: [(i32, &str); 3] =
 #[cfg(not(unix))]
 const SIGNALS: [(i32, &str); 2] = [(consts::SIGINT, "Ctrl-C"), (consts::SIGTERM, "SIGTERM")];
 
+/// Signals that follow the first one sooner are the same wish: `timeout` sends one to a program and one to its group.
+const TOGETHER: Duration = Duration::from_millis(200);
+/// Time between two questions whether one came.
+const NAP: Duration = Duration::from_millis(50);
+
 /// The signal that came; 0 before.
 static CAME: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
 
 /// From here on signals are kept for [`signal`]. Where the machine allows no handlers, they end the program as before.
 pub(super) fn listen() {
     let came = CAME.get_or_init(|| Arc::new(AtomicUsize::new(0)));
-    let ignored = ignored();
+    let (ignored, again) = (ignored(), Arc::new(AtomicBool::new(false)));
     for (signal, _) in SIGNALS.into_iter().filter(|(signal, _)| ignored >> (signal - 1) & 1 == 0) {
-        let again = Arc::new(AtomicBool::new(false));
-        // In this order: the shutdown must not see the flag that the same signal sets.
         let _ = flag::register_conditional_shutdown(signal, exit_code(signal).into(), again.clone());
-        let _ = flag::register(signal, again);
         let _ = flag::register_usize(signal, came.clone(), signal as usize);
     }
+    thread::spawn(move || {
+        while signal().is_none() {
+            thread::sleep(NAP);
+        }
+        thread::sleep(TOGETHER);
+        again.store(true, Ordering::Relaxed);
+    });
 }
 
 /// The signals that whoever started the program wants it to ignore (nohup does), as bits from 0; on other systems than

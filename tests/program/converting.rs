@@ -293,6 +293,18 @@ fn values_take_the_place_of_parameters() {
     });
 }
 
+/// Mitsuba refuses `<integer>` for a parameter that takes any number.
+#[test]
+fn whole_numbers_in_xml_are_of_the_kind_that_the_parameter_takes() {
+    let text = r#"{"type": "scene", "fog": {"type": "homogeneous", "sigma_t": 1, "albedo": 0},
+        "path": {"type": "path", "max_depth": 3}}"#;
+    let sandbox = Sandbox::with_files(&[("a.json", text)]);
+    let (xml, _) = sandbox.convert("a.json", "a.xml", &[]);
+    for line in ["<float name=\"sigma_t\" value=\"1\"/>", "<integer name=\"max_depth\" value=\"3\"/>"] {
+        assert!(xml.contains(line), "{xml}");
+    }
+}
+
 #[test]
 fn numbers_keep_their_kind_and_every_bit() {
     let text = r#"{"type": "scene", "s": {"type": "sphere", "a": 1, "b": 1.0, "c": -0.0, "d": 0.1, "e": 1e300,
@@ -452,6 +464,16 @@ fn what_a_spelling_cannot_hold_is_an_error() {
     assert!(sandbox.convert("told.xml", "again.json", &[]).0.contains("\"$tag\": \"shape\""));
 }
 
+/// `1.0` as `1`: in XML, a whole number is of the kind that its parameter takes.
+fn without_points(text: &str) -> String {
+    let mut parts = text.split(".0");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |all, part| {
+        let is_longer = part.starts_with(|next: char| next.is_ascii_digit() || next == 'e');
+        if is_longer { all + ".0" + part } else { all + part }
+    })
+}
+
 /// Every scene that is shipped, there and back.
 #[test]
 fn shipped_scenes_come_back() {
@@ -470,7 +492,7 @@ fn shipped_scenes_come_back() {
         let sandbox = Sandbox::with_files(&[(&format!("there.{other}"), &there.text)]);
         let back = sandbox.convert(&format!("there.{other}"), &format!("back.{ours}"), &[]).0;
         let direct = format::convert(&path, &path.with_extension(format!("new.{ours}")), &[]).unwrap();
-        assert_eq!(direct.text, back, "{}", path.display());
+        assert_eq!(without_points(&direct.text), without_points(&back), "{}", path.display());
         assert!(there.notes.iter().all(|note| note.contains("only their values")), "{:?}", there.notes);
         seen.insert(ours);
     }

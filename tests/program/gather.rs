@@ -34,6 +34,15 @@ fn images_say_that_they_are_previews_and_are_the_same_by_any_threads() {
     assert!(sandbox.channels("fast.exr")["G"].iter().any(|value| *value > 0.0));
 }
 
+/// A first pass is made whole, and says what that cost.
+#[test]
+fn a_time_limit_that_is_not_kept_is_told() {
+    let render = "render scene.json --time-limit 0.01s -o a.exr --integrator";
+    let said = divided().run(&format!("{render} gather")).ends(0).err();
+    assert!(said.contains("--time-limit 0.01 s was not kept: the first pass of gather"), "{said}");
+    assert!(!divided().run(&format!("{render} pt")).ends(0).err().contains("was not kept"));
+}
+
 /// It has no use for a second walk from each primary ray, and says so.
 #[test]
 fn no_interaction_is_forced() {

@@ -440,6 +440,21 @@ fn print_summary(
         image.elapsed.as_secs_f64(),
         target.path.display(),
     ));
+    warn_of_first_pass(task, image.elapsed);
+}
+
+/// A first pass does not look at the time.
+fn warn_of_first_pass(task: &Task<'_>, elapsed: Duration) {
+    let is_over = |limit: &Duration| elapsed > 2 * *limit;
+    let algorithm = task.settings.options.algorithm;
+    if let Some(limit) = task.arguments.time_limit.filter(is_over).filter(|_| algorithm.ends_in_first_pass())
+    {
+        complain(&format!(
+            "warning: --time-limit {} s was not kept: the first pass of {} is always made whole",
+            limit.as_secs_f64(),
+            algorithm.name()
+        ));
+    }
 }
 
 /// Figures for scripts: those of one image, or of every frame.

@@ -5,10 +5,12 @@ use crate::{
     description::{
         Keyframes, Location, Object, Property, TransformStep, Value,
         keyframes::{Interpolation, Key},
+        parameter::{Kind, Parameter},
     },
     error::Result,
-    format::parameters::escaped,
+    format::{parameters::escaped, tags},
 };
+use std::borrow::Cow;
 
 /// The text of a file that holds `root`, in which all objects have their tags.
 pub(super) fn file(root: &Object) -> Result<String> {
@@ -26,6 +28,29 @@ pub(super) fn property(property: &Property) -> Result<String> {
     let mut writer = Writer { out: String::new() };
     writer.property(property, 0)?;
     Ok(writer.out)
+}
+
+/// `property`, a whole number of it as what the `row` of its parameter takes: where that is a real number, Mitsuba refuses
+/// `<integer>`.
+fn typed<'a>(property: &'a Property, row: Option<&Parameter>) -> Cow<'a, Property> {
+    match property.value {
+        Value::Integer(whole) if row.is_some_and(|row| is_real(&row.kind)) => {
+            Cow::Owned(Property { value: Value::Float(whole as f64), ..property.clone() })
+        }
+        _ => Cow::Borrowed(property),
+    }
+}
+
+fn is_real(kind: &Kind) -> bool {
+    matches!(
+        kind,
+        Kind::Number(_)
+            | Kind::NumberOrName(_)
+            | Kind::Channels
+            | Kind::Colour(..)
+            | Kind::Texture(..)
+            | Kind::Volume(..)
+    )
 }
 
 struct Writer {
@@ -73,8 +98,12 @@ impl Writer {
         attributes.extend(object.id.as_ref().map(|id| ("id", escaped(id))));
         attributes.extend(name);
         let tag = object.tag.as_deref().unwrap_or_default();
+        let table = tags::tables(tag).into_iter().find(|(name, _)| *name == object.plugin);
         self.element(tag, &attributes, &object.location, depth, |writer| {
-            object.properties.iter().try_for_each(|property| writer.property(property, depth + 1))
+            object.properties.iter().try_for_each(|property| {
+                let row = table.and_then(|(_, table)| table.find(&property.name));
+                writer.property(&typed(property, row), depth + 1)
+            })
         })
     }
 

@@ -14,6 +14,9 @@ use crate::{
     medium::{DistanceMethod, Heterogeneous, Medium, MediumIndex},
 };
 
+/// The albedo from which on a path is expected to scatter a thousand times before it is absorbed.
+const ENDLESS: f32 = 0.999;
+
 /// Reports every one of `media` (all but vacuum) that is too dense, or too thin for the size of the scene.
 pub(crate) fn check(
     media: &[Medium],
@@ -82,10 +85,16 @@ fn check_mean_free_path(
     if farthest > resolved || free_path < LEAST_MEAN_FREE_PATH {
         // What starts behind the boundary loses the light that is scattered before it, and keeps what is not absorbed there.
         let wrong = if medium.emission.is_some() { "wrong, most likely too bright," } else { "too dark" };
+        let is_endless = medium.bound().survival() >= ENDLESS && free_path < step * farthest;
+        let endless = if is_endless {
+            ", and a path may scatter in it for minutes unless max_depth ends it"
+        } else {
+            ""
+        };
         let text = format!(
             "expected a mean free path of at least {:.1e} m, found {free_path:.1e} m (1 over the largest sigma_t), in a \
              medium that reaches {farthest:.2e} m from the camera: positions are rounded to {:.1e} m there, and its \
-             boundaries will be {wrong} beyond {resolved:.1e} m. Lower sigma_t, or bring the medium closer",
+             boundaries will be {wrong} beyond {resolved:.1e} m{endless}. Lower sigma_t, or bring the medium closer",
             (RESOLVED_STEPS * step * farthest).max(LEAST_MEAN_FREE_PATH),
             step * farthest,
         );

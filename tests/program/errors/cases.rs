@@ -433,6 +433,7 @@ pub(super) fn all() -> Vec<Case> {
         Case::json("wavelengths out of order", r#""lamp": {"type": "point", "intensity": {"type": "irregular", "wavelengths": "500, 400", "values": "1, 2"}}"#),
         Case::json("a spectrum out of gamut", r#""a": {"type": "sphere", "bsdf": {"type": "diffuse", "reflectance": {"type": "spectrum", "value": [[400, 0], [520, 1], [540, 0]]}}}"#).warned(),
         Case::json("a mean free path below what positions tell", r#""a": {"type": "cube", "bsdf": {"type": "null"}, "interior": {"type": "homogeneous", "sigma_t": 1e7}}"#).warned(),
+        Case::json("a white medium in which nothing gets anywhere", r#""a": {"type": "cube", "bsdf": {"type": "null"}, "interior": {"type": "homogeneous", "sigma_t": 1e9, "albedo": 1}}"#).warned(),
         Case::json("a glowing medium too dense for positions", r#""a": {"type": "cube", "bsdf": {"type": "null"}, "interior": {"type": "homogeneous", "sigma_t": 1e6, "emission": 1}}"#).warned(),
         Case::json("a medium denser than any", r#""a": {"type": "cube", "bsdf": {"type": "null"}, "interior": {"type": "homogeneous", "sigma_t": 1e38}}"#),
         Case::json("a medium too large for its densities", r#""a": {"type": "cube", "bsdf": {"type": "null"}, "to_world": [{"type": "scale", "value": 1e12}], "interior": {"type": "homogeneous", "sigma_t": 1e-12}}"#).warned(),
