@@ -66,6 +66,20 @@ def test_known_differences_of_mitsuba() -> None:
     assert (board.eval(place)[0], board.eval_1(place)) == pytest.approx((0.1, 0.9))
 
 
+def test_lamps_of_smooth_meshes_are_dark_at_their_edges_in_mitsuba(tmp_path: Path) -> None:
+    """By the faces, all of a closed lamp shines; by interpolated normals, what faces away from the eye does not."""
+    (tmp_path / "lamp.obj").write_text("v 0 0.5 0\nv 0.4 -0.3 0.3\nv -0.4 -0.3 0.3\nv 0 -0.3 -0.5\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+    lamp = {"type": "obj", "filename": str(tmp_path / "lamp.obj"), "face_normals": False, "emitter": {"type": "area", "radiance": 1.0}}
+    film = {"type": "hdrfilm", "width": 32, "height": 32, "pixel_format": "luminance", "rfilter": {"type": "box"}}
+    camera = {"type": "perspective", "fov": 30.0, "to_world": mi.ScalarTransform4f().look_at([0, 0.3, 3], [0, 0, 0], [0, 1, 0]), "film": film}
+    there = {"type": "scene", "integrator": {"type": "path"}, "camera": camera, "lamp": lamp}
+    ours = tyndall.render(tyndall.from_mitsuba(there), spp=16, integrator="pt")[..., 0]
+    theirs = np.array(mi.render(mi.load_dict(there), spp=16))[..., 0]
+    assert ours.max() == pytest.approx(1, rel=1e-5) and theirs.sum() < 0.99 * ours.sum()
+    faceted = np.array(mi.render(mi.load_dict({**there, "lamp": {**lamp, "face_normals": True}}), spp=16))[..., 0]
+    assert faceted.sum() == pytest.approx(ours.sum(), rel=0.02)
+
+
 def test_files_go_too() -> None:
     theirs = tyndall.to_mitsuba(SCENES / "lampbox_up.xml", {"res": 8})
     assert tuple(mi.load_dict(theirs).sensors()[0].film().size()) == (8, 8)
