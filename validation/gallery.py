@@ -35,7 +35,7 @@ FASTER = 16
 """more of them at most at a time, as the first ones take longer,"""
 CLOSE = 0.75
 """until it takes so much of the time of ours,"""
-TRIALS = 5
+TRIALS = 8
 """or has been tried so often."""
 VIEW = {"--exposure", "--view"}
 """Options that Mitsuba's picture is shown by too."""

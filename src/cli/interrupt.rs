@@ -17,29 +17,40 @@ const SIGNALS: [(i32, &str); 3] =
 #[cfg(not(unix))]
 const SIGNALS: [(i32, &str); 2] = [(consts::SIGINT, "Ctrl-C"), (consts::SIGTERM, "SIGTERM")];
 
-/// Signals that follow the first one sooner are the same wish: `timeout` sends one to a program and one to its group.
-const TOGETHER: Duration = Duration::from_millis(200);
-/// Time between two questions whether one came.
-const NAP: Duration = Duration::from_millis(50);
+/// A signal that follows one of its kind sooner is the same wish: `timeout` sends one to a program and one to its group.
+const TOGETHER: Duration = Duration::from_millis(100);
 
 /// The signal that came; 0 before.
 static CAME: OnceLock<Arc<AtomicUsize>> = OnceLock::new();
 
 /// From here on signals are kept for [`signal`]. Where the machine allows no handlers, they end the program as before.
 pub(super) fn listen() {
-    let came = CAME.get_or_init(|| Arc::new(AtomicUsize::new(0)));
-    let (ignored, again) = (ignored(), Arc::new(AtomicBool::new(false)));
-    for (signal, _) in SIGNALS.into_iter().filter(|(signal, _)| ignored >> (signal - 1) & 1 == 0) {
-        let _ = flag::register_conditional_shutdown(signal, exit_code(signal).into(), again.clone());
-        let _ = flag::register_usize(signal, came.clone(), signal as usize);
+    if CAME.get().is_some() {
+        return;
     }
-    thread::spawn(move || {
-        while signal().is_none() {
-            thread::sleep(NAP);
-        }
-        thread::sleep(TOGETHER);
-        again.store(true, Ordering::Relaxed);
+    let (came, ignored) = (CAME.get_or_init(|| Arc::new(AtomicUsize::new(0))), ignored());
+    let kept = SIGNALS.into_iter().filter(|(signal, _)| ignored >> (signal - 1) & 1 == 0);
+    let heard = kept.map(|(signal, _)| {
+        let [once, again] = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
+        let _ = flag::register_conditional_shutdown(signal, exit_code(signal).into(), again.clone());
+        let _ = flag::register(signal, once.clone());
+        let _ = flag::register_usize(signal, came.clone(), signal as usize);
+        (once, again)
     });
+    let heard: Vec<_> = heard.collect();
+    let _ = thread::Builder::new().spawn(move || arm(&heard));
+}
+
+/// Has another signal of a kind end the program, a while after the first one came. Never returns.
+fn arm(heard: &[(Arc<AtomicBool>, Arc<AtomicBool>)]) {
+    let mut before = vec![false; heard.len()];
+    loop {
+        thread::sleep(TOGETHER);
+        for ((once, again), before) in heard.iter().zip(&mut before) {
+            again.store(*before, Ordering::Relaxed);
+            *before = once.load(Ordering::Relaxed);
+        }
+    }
 }
 
 /// The signals that whoever started the program wants it to ignore (nohup does), as bits from 0; on other systems than

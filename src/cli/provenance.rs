@@ -161,7 +161,7 @@ pub(super) fn without_window(made: &Value) -> Value {
     made
 }
 
-/// `settings` without what decides about noise alone: what a pilot chose, and whether walks follow a guide. Samples that were
+/// `settings` without what decides about noise alone (as validation/cluster/tiles.py has it, too): what a pilot chose, and whether walks follow a guide. Samples that were
 /// made otherwise are of the same image.
 fn of_image(settings: &Value) -> Value {
     let mut settings = settings.clone();

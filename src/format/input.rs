@@ -50,6 +50,7 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>> {
     static KEPT: OnceLock<Vec<u8>> = OnceLock::new();
     let explain = |error| Error::io(path, "read", &error);
     if is_volume(path) {
+        inputs::note(path, Reader::Scene);
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         return portrait(path).map(|portrait| portrait.text(&name).into_bytes());
     }

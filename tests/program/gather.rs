@@ -37,9 +37,9 @@ fn images_say_that_they_are_previews_and_are_the_same_by_any_threads() {
 /// A first pass is made whole, and says what that cost.
 #[test]
 fn a_time_limit_that_is_not_kept_is_told() {
-    let render = "render scene.json --time-limit 0.01s -o a.exr --integrator";
+    let render = "render scene.json --time-limit 0.0001s -o a.exr --integrator";
     let said = divided().run(&format!("{render} gather")).ends(0).err();
-    assert!(said.contains("--time-limit 0.01 s was not kept: the first pass of gather"), "{said}");
+    assert!(said.contains("--time-limit 0.0001 s was not kept: the first pass of gather"), "{said}");
     assert!(!divided().run(&format!("{render} pt")).ends(0).err().contains("was not kept"));
 }
 

@@ -279,21 +279,13 @@ fn sums_of_another_precision_are_refused() {
 #[test]
 fn a_second_signal_ends_at_once() {
     let fog = json!({"type": "homogeneous", "sigma_t": 1e6, "albedo": 1});
-    let sandbox = Sandbox::with_scene(&scene(&[
+    let white = scene(&[
         ("camera", camera([0.0; 3], [0.0, 0.0, -1.0], 8)),
         ("ball", json!({"type": "sphere", "radius": 0.5, "bsdf": {"type": "null"}, "interior": fog})),
         ("sky", sky(1.0)),
-    ]));
-    let arguments =
-        ["--default-signal=INT", env!("CARGO_BIN_EXE_tyndall"), "render", "scene.json", "--spp", "1"];
-    let mut child = Command::new("env")
-        .args(arguments)
-        .args(["--strategies", "hit"])
-        .current_dir(sandbox.path(""))
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(Duration::from_secs(1));
+    ]);
+    let sandbox = Sandbox::with_files(&[("fog.json", &white.to_string())]);
+    let mut child = child(&sandbox, "--spp 1", |line| line.contains("60 x 50"));
     signal(&child, "-INT");
     std::thread::sleep(Duration::from_secs(1));
     assert!(child.try_wait().unwrap().is_none(), "it ends in order");
@@ -309,11 +301,9 @@ fn a_second_signal_ends_at_once() {
 fn two_signals_together_are_one() {
     let sandbox = foggy();
     let mut child = under_way(&sandbox, "--time-limit 1000s -o fog.exr");
-    signal(&child, "-STOP");
-    signal(&child, "-INT");
-    signal(&child, "-TERM");
-    signal(&child, "-CONT");
-    assert!([130, 143].contains(&child.wait().unwrap().code().unwrap()));
+    let twice = format!("kill -INT {0}; kill -INT {0}", child.id());
+    Command::new("sh").args(["-c", &twice]).status().unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130));
     assert!(sandbox.path("fog.exr").exists());
 }
 

@@ -7,11 +7,9 @@ import sys
 from pathlib import Path
 
 from tyndall.failure import Failure
-from validation import environment
 from validation.cluster import farm, parts, render, study, tiles
 from validation.cluster.job import Job, job
 from validation.cluster.parts import part_size
-from validation.places import REQUIREMENTS_CLUSTER
 
 TEXT = "One picture, or one study, by many processes or machines over Dask distributed (validation/cluster/README.md)."
 
@@ -78,7 +76,6 @@ def add_cluster(command: argparse.ArgumentParser) -> None:
 
 
 def run_render(options: argparse.Namespace, more: list[str], _: str) -> None:
-    environment.extra(REQUIREMENTS_CLUSTER)
     if options.scheduler is None:
         more = shared(more, options.workers)
     picture = wanted(options, more)
@@ -104,7 +101,6 @@ def run_commands(options: argparse.Namespace, more: list[str], _: str) -> None:
 
 
 def run_study(options: argparse.Namespace, more: list[str], command: str) -> None:
-    environment.extra(REQUIREMENTS_CLUSTER)
     more = shared(more, options.workers) if options.scheduler is None else more
     with farm.connected(options.scheduler, options.workers, options.retries) as client:
         study.run(client, options.scenes, options.output, more, options.retries, command)

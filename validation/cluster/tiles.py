@@ -63,7 +63,7 @@ def begin(job: Job, crops: list[str]) -> list[str]:
 
 
 CHOSEN = ("chosen_by_pilot", "guide", "basis", "learnt_starts", "sky")
-"""What decides about noise alone: parts may differ in it, as `merge` allows."""
+"""What decides about noise alone: parts may differ in it, as `merge` allows (src/cli/provenance.rs: of_image)."""
 
 
 def settings(path: Path) -> dict[str, Any]:

@@ -21,7 +21,6 @@ import pytest
 from tyndall import exr, program
 from tyndall.failure import Failure
 from validation import cli as whole_cli
-from validation import environment
 from validation.cluster import cli, farm, locked, parts, render, study, task, tiles
 from validation.cluster.job import Job, job
 from validation.cluster.sums import Sums, info
@@ -94,7 +93,6 @@ def test_options_that_no_part_can_have_are_refused(tmp_path: Path) -> None:
 def test_what_the_driver_does_not_know_is_for_the_program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pictures: list[tuple[Job, int]] = []
     workers = SimpleNamespace(nthreads=lambda: {"one": 1, "other": 1})
-    monkeypatch.setattr(environment, "extra", lambda _: None)
     monkeypatch.setattr(farm, "connected", lambda *_: nullcontext(workers))
     monkeypatch.setattr(render, "run", lambda _, picture, size, retries: pictures.append((picture, size)))
     words = f"render {SCENES}/lampbox_up.xml --max-depth -1 -o {tmp_path}/a.exr -D res=8 --workers 1000 --size 8x6 --spp 64 --parts 4"

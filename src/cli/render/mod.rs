@@ -281,6 +281,7 @@ fn nothing() -> Written {
 
 /// Renders one image under a progress bar; where what there is was kept.
 fn watched(setup: &Setup, task: &Task<'_>, target: &Target, label: Option<&str>) -> Result<(Image, Written)> {
+    let started = Instant::now();
     let bar = Bar::new(task.settings, task.precision, setup.film.len(), label);
     let Setup { film, integrator, .. } = setup;
     let (layers, settings) = (&integrator.layers, &task.settings);
@@ -291,6 +292,7 @@ fn watched(setup: &Setup, task: &Task<'_>, target: &Target, label: Option<&str>)
         keeping(setup, task, target, &bar)?
     };
     bar.finish();
+    warn_of_first_pass(task, started.elapsed());
     Ok(done)
 }
 
@@ -440,15 +442,13 @@ fn print_summary(
         image.elapsed.as_secs_f64(),
         target.path.display(),
     ));
-    warn_of_first_pass(task, image.elapsed);
 }
 
 /// A first pass does not look at the time.
 fn warn_of_first_pass(task: &Task<'_>, elapsed: Duration) {
-    let is_over = |limit: &Duration| elapsed > 2 * *limit;
     let algorithm = task.settings.options.algorithm;
-    if let Some(limit) = task.arguments.time_limit.filter(is_over).filter(|_| algorithm.ends_in_first_pass())
-    {
+    let limit = task.arguments.time_limit.filter(|limit| elapsed / 2 > *limit);
+    if let Some(limit) = limit.filter(|_| algorithm.ends_in_first_pass()) {
         complain(&format!(
             "warning: --time-limit {} s was not kept: the first pass of {} is always made whole",
             limit.as_secs_f64(),

@@ -69,6 +69,11 @@ impl Camera {
         self.frame = Frame { origin: own(origin) / self.scale, direction: own(direction), breadth };
     }
 
+    /// Has the image where `other` has it.
+    pub(super) fn frame_as(&mut self, other: &Self) {
+        self.frame = other.frame;
+    }
+
     /// How wide the image is at such a `distance` from the camera (m).
     pub(super) fn breadth_at(&self, distance: f64) -> f64 {
         self.frame.breadth * if self.is_parallel { self.scale.x.abs() } else { distance }

@@ -129,8 +129,11 @@ impl<'a> Painter<'a> {
                 let is_alike =
                     |home: &Camera| self.camera.as_ref().is_some_and(|camera| camera.is_like(home));
                 let stays = loaded.home.as_ref().is_ok_and(is_alike);
-                if !(stays && loaded.placement == self.loaded.placement) {
-                    self.camera = loaded.home.clone().ok();
+                match (&mut self.camera, &loaded.home) {
+                    (Some(camera), Ok(home)) if stays && loaded.placement == self.loaded.placement => {
+                        camera.frame_as(home);
+                    }
+                    _ => self.camera = loaded.home.clone().ok(),
                 }
                 self.loaded = loaded;
                 self.board.tell(None);

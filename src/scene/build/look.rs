@@ -5,7 +5,7 @@ use crate::{
     description::{Library, Location, Object, Property, TransformStep, Value},
     error::{Error, Result},
     film::Film,
-    math::{DVec3, Vec2, Vec3, vec2},
+    math::{DVec3, Vec2, Vec3, offset::ROUNDOFF, vec2},
     medium::MediumIndex,
     scene::{
         memo::Memo,
@@ -85,8 +85,11 @@ impl Setup {
     /// The line in the middle of the image: its point nearest to the camera's position, from there (m), and its direction.
     pub fn ahead(&self) -> (DVec3, DVec3) {
         let Ray { origin, direction, .. } = self.scene.sensor.ray(middle(&self.film), Vec2::ZERO).ray;
-        let aside = (origin - self.scene.sensor.position()).reject_from_normalized(direction);
-        (aside.as_dvec3(), direction.as_dvec3().normalize())
+        let position = self.scene.sensor.position();
+        let aside = (origin - position).reject_from_normalized(direction);
+        // What rounding makes of nothing.
+        let is_aside = aside.length() > 16.0 * ROUNDOFF * position.abs().max_element();
+        (if is_aside { aside.as_dvec3() } else { DVec3::ZERO }, direction.as_dvec3().normalize())
     }
 
     /// How far the middle of all shapes is from the camera (m); none in a scene without shapes, or with endless ones.

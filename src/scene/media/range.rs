@@ -14,8 +14,8 @@ use crate::{
     medium::{DistanceMethod, Heterogeneous, Medium, MediumIndex},
 };
 
-/// The albedo from which on a path is expected to scatter a thousand times before it is absorbed.
-const ENDLESS: f32 = 0.999;
+/// Scatterings of one path that take longer than anybody waits for a sample: some seconds.
+const ENDLESS: f64 = 1e8;
 
 /// Reports every one of `media` (all but vacuum) that is too dense, or too thin for the size of the scene.
 pub(crate) fn check(
@@ -42,6 +42,12 @@ pub(crate) fn check(
         }
     }
     Ok(())
+}
+
+/// How often a path scatters before it is absorbed, or has found out of a medium of so many mean free paths.
+fn scatterings(medium: &Medium, thickness: f32) -> f64 {
+    let absorbed = 1.0 - f64::from(medium.bound().survival());
+    f64::from(thickness).powi(2).min(1.0 / absorbed.max(0.0))
 }
 
 /// The largest coordinate of a box (m from the camera).
@@ -85,9 +91,8 @@ fn check_mean_free_path(
     if farthest > resolved || free_path < LEAST_MEAN_FREE_PATH {
         // What starts behind the boundary loses the light that is scattered before it, and keeps what is not absorbed there.
         let wrong = if medium.emission.is_some() { "wrong, most likely too bright," } else { "too dark" };
-        let is_endless = medium.bound().survival() >= ENDLESS && free_path < step * farthest;
-        let endless = if is_endless {
-            ", and a path may scatter in it for minutes unless max_depth ends it"
+        let endless = if scatterings(medium, farthest / free_path) > ENDLESS {
+            ", and a path that gets deep into it scatters for seconds to hours unless max_depth ends it"
         } else {
             ""
         };
