@@ -79,8 +79,9 @@ class Reference:
 
 
 def reference(scene: Path, effort: Effort, by: str = BDPT) -> Reference:
-    """A reference is made once, by a study of its own: it is made again when the scene changes or more time is given."""
-    told = [scene.read_bytes(), effort.size, effort.reference_seconds, effort.parameters, by]
+    """A reference is made once, by a study of its own: it is made again when the scene or the version changes or more time is given."""
+    version = program.call([str(program.binary()), "--version"]).stdout
+    told = [version, scene.read_bytes(), effort.size, effort.reference_seconds, effort.parameters, by]
     folder = OUTPUT / "references" / f"{scene.stem}-{hashlib.sha256(repr(told).encode()).hexdigest()[:12]}"
     little: dict[str, program.Option] = {"quiet": True, "spp": 1, "seeds": 2, "doublings": 1, "reference_by": by, "reference_seconds": effort.reference_seconds}
     if not run([os.path.relpath(scene), "--contender", f"it: {by}", *program.flags(little), *effort.given(), "-o", os.path.relpath(folder)]):
