@@ -201,6 +201,10 @@ fn question(arguments: &Study, contenders: Vec<Contender>, threads: usize) -> Re
             fingerprint: fingerprint_of(&format::sources(file, &arguments.definitions, None)?)?,
         })
     };
+    let effort = match (arguments.spp, arguments.seconds) {
+        (Some(spp), _) => Effort::Samples(u64::from(spp)),
+        (None, seconds) => Effort::Seconds(seconds.map_or(SECONDS, |seconds| seconds.as_secs_f64())),
+    };
     Ok(Question {
         program: provenance::program(),
         scenes: names.into_iter().zip(&arguments.scenes).map(scene).collect::<Result<_>>()?,
@@ -211,17 +215,16 @@ fn question(arguments: &Study, contenders: Vec<Contender>, threads: usize) -> Re
         seeds: u64::from(arguments.seeds),
         first_seed: arguments.seed,
         doublings: arguments.doublings,
-        effort: effort(arguments),
+        effort,
         threads,
     })
 }
 
-/// The largest budget.
-fn effort(arguments: &Study) -> Effort {
-    match (arguments.spp, arguments.seconds) {
-        (Some(spp), _) => Effort::Samples(u64::from(spp)),
-        (None, seconds) => Effort::Seconds(seconds.map_or(SECONDS, |seconds| seconds.as_secs_f64())),
-    }
+/// The largest budget, by which pilots judge: a render of its own has the same.
+fn largest(arguments: &Study) -> Budget {
+    let seconds = || arguments.seconds.unwrap_or(Duration::from_secs_f64(SECONDS));
+    let (samples_per_pixel, time) = (arguments.spp.map(u64::from), arguments.spp.is_none().then(seconds));
+    Budget { samples_per_pixel, time, ..Budget::ENDLESS }
 }
 
 /// Of all that a scene is read from.
@@ -353,14 +356,7 @@ impl<'a> Stage<'a> {
         let (setup, load_seconds) = self.setup(scene, overrides)?;
         let (settings, head) = Head::of(&setup.scene, || {
             let started = Instant::now();
-            // As a render of the largest budget has it.
-            let most = match effort(self.arguments) {
-                Effort::Samples(each) => Budget::samples(each),
-                Effort::Seconds(seconds) => {
-                    Budget { time: Some(Duration::from_secs_f64(seconds)), ..Budget::ENDLESS }
-                }
-            };
-            let (settings, chosen) = requested.chosen(&setup, 0, most)?;
+            let (settings, chosen) = requested.chosen(&setup, 0, largest(self.arguments))?;
             let budget = Budget { spent: started.elapsed(), ..settings.budget };
             let settings = Settings { budget, ..settings };
             Ok((settings, Plan::new(&setup, settings, chosen, None).words()))

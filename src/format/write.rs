@@ -1,8 +1,8 @@
 //! Writes scenes in either format, from the tree that the renderer reads.
 //!
 //! What is kept: plugins, names, ids, references, order, every number to the last bit (whole numbers and others
-//! apart; in XML, as the parameter takes them), colours, spectra, transforms step by step, strings, and which files are meant. What is not: comments and
-//! layout, parameters and their defaults (their values are put in place), the division into included files (their
+//! apart; in XML, as the parameter takes them), colours, spectra, transforms step by step, strings, and which files are
+//! meant. What is not: comments and layout, parameters and their defaults (their values are put in place), the division into included files (their
 //! content is put in place), second names of objects (references lead straight to the ids), and names of spectrum
 //! files (their values are put in place). JSON gives a key to everything; a child without a name is called after its
 //! tag, and what is so called loses the name again on the way back.

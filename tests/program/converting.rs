@@ -492,7 +492,8 @@ fn shipped_scenes_come_back() {
         let sandbox = Sandbox::with_files(&[(&format!("there.{other}"), &there.text)]);
         let back = sandbox.convert(&format!("there.{other}"), &format!("back.{ours}"), &[]).0;
         let direct = format::convert(&path, &path.with_extension(format!("new.{ours}")), &[]).unwrap();
-        assert_eq!(without_points(&direct.text), without_points(&back), "{}", path.display());
+        let same = |text: &str| if ours == "json" { without_points(text) } else { text.to_owned() };
+        assert_eq!(same(&direct.text), same(&back), "{}", path.display());
         assert!(there.notes.iter().all(|note| note.contains("only their values")), "{:?}", there.notes);
         seen.insert(ours);
     }

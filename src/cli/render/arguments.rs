@@ -111,9 +111,9 @@ pub struct Render {
     /// [default: no limit]
     ///
     /// The samples completed by then are written. The limit includes the pilot and training; before the first sample these
-    /// take at most half of it, but the first pass of gather and first-pass, which is always made whole, takes as long as it
-    /// needs. With --spp as well, the render stops at whichever limit is reached first. Alpha and the
-    /// layers of an aov integrator are rendered afterwards, within a tenth of a second or one pass over the image.
+    /// take at most half of it. The first pass of gather and first-pass is always made whole, however long it takes. With
+    /// --spp as well, the render stops at whichever limit is reached first. Alpha and the layers of an aov integrator are
+    /// rendered afterwards, within a tenth of a second or one pass over the image.
     #[arg(long, value_name = "TIME", value_parser = duration, allow_negative_numbers = true, help_heading = heading::BUDGET)]
     pub time_limit: Option<Duration>,
 
