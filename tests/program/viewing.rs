@@ -45,11 +45,20 @@ impl Picture {
     }
 
     /// Red, green and blue in the middle.
-    fn middle(&self) -> [u8; 3] {
-        let [width, height] = [0, 1].map(|axis| self.head["size"][axis].as_u64().unwrap() as usize);
-        assert_eq!(self.pixels.len(), 4 * width * height);
-        let at = 4 * (height / 2 * width + width / 2);
-        [0, 1, 2].map(|channel| self.pixels[at + channel])
+    fn middle(&self) -> [u32; 3] {
+        let [width, height] = self.size();
+        self.pixel(height / 2 * width + width / 2)
+    }
+
+    /// Red, green and blue of a pixel, wide enough to be added and multiplied.
+    fn pixel(&self, index: usize) -> [u32; 3] {
+        [0, 1, 2].map(|channel| u32::from(self.pixels[4 * index + channel]))
+    }
+
+    fn size(&self) -> [usize; 2] {
+        let size = [0, 1].map(|axis| self.head["size"][axis].as_u64().unwrap() as usize);
+        assert_eq!(self.pixels.len(), 4 * size[0] * size[1]);
+        size
     }
 
     fn camera(&self) -> &str {
@@ -344,7 +353,7 @@ fn an_edited_field_of_view_is_that_of_the_next_gesture() {
     narrow["sensor"]["fov"] = json!(10);
     fs::write(sandbox.path("scene.json"), narrow.to_string()).unwrap();
     // The ball fills all of it.
-    let edge = |picture: &Picture| picture.pixels[0] > 2 * picture.pixels[1];
+    let edge = |picture: &Picture| picture.pixel(0)[0] > 2 * picture.pixel(0)[1];
     let seen = server.picture(wide.number(), |picture| picture.is_whole() && edge(picture));
     server.wish(&json!(["grip", {"pan": [0.1, 0.0]}]));
     let moved = server.picture(seen.number(), |picture| picture.camera() != seen.camera());
