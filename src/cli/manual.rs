@@ -5,7 +5,7 @@ use super::{
     console::{self, say},
 };
 use crate::{
-    error::{Error, Result},
+    error::Result,
     film::output,
 };
 use clap::{Args, Command, CommandFactory};
@@ -61,10 +61,7 @@ fn page(command: &Command) -> String {
 }
 
 fn write(folder: &Path) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|error| {
-        let remedy = "choose another place, or check that you may create a folder there";
-        Error::new(folder.display(), "a folder to write to", error.to_string(), remedy)
-    })?;
+    output::create_folder(folder)?;
     let whole = command();
     for command in std::iter::once(&whole).chain(whole.get_subcommands()) {
         let name = command.get_display_name().unwrap_or(command.get_name());

@@ -54,7 +54,7 @@ pub struct Phase {
     pub significance: f64,
 
     /// Also draw: NAME.svg, a polar plot, NAME.ply, a mesh of the pdf, and NAME_samples.ply, one of the sampled flux,
-    /// to this folder
+    /// to this folder, created if missing
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
 
@@ -75,7 +75,7 @@ pub fn run(arguments: &Phase) -> Result<bool> {
         return Ok(true);
     };
     let phase = described::build(name, &arguments.parameters)?;
-    let drawings = arguments.output.as_ref().map(|folder| Drawings::new(folder, name));
+    let drawings = arguments.output.as_ref().map(|folder| Drawings::new(folder, name)).transpose()?;
     check_short(drawings.iter().flat_map(Drawings::files).chain(&arguments.answer.report))?;
     let division = Division { parallels: arguments.parallels.into(), meridians: arguments.meridians.into() };
     let check = phase::check(&phase, &phase, division, arguments.samples, arguments.seed);
@@ -97,9 +97,10 @@ struct Drawings {
 }
 
 impl Drawings {
-    fn new(folder: &Path, name: &str) -> Self {
+    fn new(folder: &Path, name: &str) -> Result<Self> {
+        output::create_folder(folder)?;
         let file = |end: &str| folder.join(format!("{name}{end}"));
-        Self { polar: file(".svg"), density: file(".ply"), samples: file("_samples.ply") }
+        Ok(Self { polar: file(".svg"), density: file(".ply"), samples: file("_samples.ply") })
     }
 
     fn files(&self) -> [&PathBuf; 3] {

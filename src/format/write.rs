@@ -2,9 +2,9 @@
 //!
 //! What is kept: plugins, names, ids, references, order, every number to the last bit (whole numbers and others
 //! apart; in XML, as the parameter takes them), colours, spectra, transforms step by step, strings, and which files are
-//! meant. What is not: comments and layout, parameters and their defaults (their values are put in place), the division into included files (their
-//! content is put in place), second names of objects (references lead straight to the ids), and names of spectrum
-//! files (their values are put in place). JSON gives a key to everything; a child without a name is called after its
+//! meant. What is not: comments and layout, parameters and their defaults (their values are put in place), the division
+//! into included files (their content is put in place), second names of objects (references lead straight to the ids), and
+//! names of spectrum files (their values are put in place). In XML, colours of media above 1 become volumes. JSON gives a key to everything; a child without a name is called after its
 //! tag, and what is so called loses the name again on the way back.
 
 mod arrange;

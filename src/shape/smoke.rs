@@ -27,7 +27,7 @@ pub const SMOKE_TABLE: Table = table! {
     text("temperature_grid", "the name of a grid", Said("flame, flames, burn, heat or temperature"), "The grid of fire; \"\" takes none."),
     text("color_grid", "the name of a grid", Said("Cd, color, or three grids of one component each"), "The grid of colours; \"\" takes none."),
     text("velocity_grid", "the name of a grid", Said("vel, velocity, v, motion or voxel_velocity"), "The grid of velocities (m/s, in the file's world), or what the names of three begin with; \"\" takes none. The smoke moves by it while the camera's shutter is open."),
-    number("velocity_scale", "", ANY, Is(1.0), "Multiplies velocities."),
+    number("velocity_scale", "m/s", ANY, Said("1; of Blender's fluids 2.5 voxels, as they note voxels per 0.4 s"), "What a velocity of 1 in the file stands for."),
     number("temperature_scale", "K", within(0.0, HOTTEST), Said("1500 for flames; 1000 for other temperatures, or 1 if they exceed 100"), "Kelvin per unit of the grid."),
     number("temperature_offset", "K", within(0.0, HOTTEST), Said("1500 for flames, else 0"), "Temperature just above a value of 0."),
     text("group", "a name of 1 to 200 ASCII letters, digits and signs", Optional, "The light group of its fire: a layer of `--groups`."),

@@ -305,6 +305,22 @@ fn whole_numbers_in_xml_are_of_the_kind_that_the_parameter_takes() {
     }
 }
 
+/// Mitsuba takes `<rgb>` for a reflectance there, and refuses one above 1.
+#[test]
+fn colours_of_media_above_1_are_volumes_in_xml() {
+    let text = r#"{"type": "scene", "fog": {"type": "homogeneous", "sigma_t": {"type": "rgb", "value": [0.2, 1, 4]},
+        "albedo": {"type": "rgb", "value": [0.5, 1, 0.9]}}}"#;
+    let sandbox = Sandbox::with_files(&[("a.json", text)]);
+    let (xml, _) = sandbox.convert("a.json", "a.xml", &[]);
+    for line in [
+        r#"<volume type="constvolume" name="sigma_t">"#,
+        r#"<rgb name="value" value="0.2, 1, 4"/>"#,
+        r#"<rgb name="albedo" value="0.5, 1, 0.9"/>"#,
+    ] {
+        assert!(xml.contains(line), "{xml}");
+    }
+}
+
 #[test]
 fn numbers_keep_their_kind_and_every_bit() {
     let text = r#"{"type": "scene", "s": {"type": "sphere", "a": 1, "b": 1.0, "c": -0.0, "d": 0.1, "e": 1e300,

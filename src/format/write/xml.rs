@@ -30,15 +30,24 @@ pub(super) fn property(property: &Property) -> Result<String> {
     Ok(writer.out)
 }
 
-/// `property`, a whole number of it as what the `row` of its parameter takes: where that is a real number, Mitsuba refuses
-/// `<integer>`.
+/// `property` by the element that Mitsuba takes for the `row` of its parameter. It refuses `<integer>` where any number
+/// may stand, and takes an `<rgb>` where a volume may stand for a reflectance: above 1 it has to be a `constvolume`.
 fn typed<'a>(property: &'a Property, row: Option<&Parameter>) -> Cow<'a, Property> {
-    match property.value {
-        Value::Integer(whole) if row.is_some_and(|row| is_real(&row.kind)) => {
-            Cow::Owned(Property { value: Value::Float(whole as f64), ..property.clone() })
+    let value = match (&property.value, row.map(|row| &row.kind)) {
+        (Value::Integer(whole), Some(kind)) if is_real(kind) => Value::Float(*whole as f64),
+        (Value::Rgb(values), Some(Kind::Volume(..))) if values.iter().any(|x| *x > 1.0) => {
+            Value::Object(constvolume(property))
         }
-        _ => Cow::Borrowed(property),
-    }
+        _ => return Cow::Borrowed(property),
+    };
+    Cow::Owned(Property { value, ..property.clone() })
+}
+
+/// The volume that has the value of `property` everywhere.
+fn constvolume(property: &Property) -> Object {
+    let [tag, plugin, name] = ["volume", "constvolume", "value"].map(str::to_owned);
+    let properties = vec![Property { name, ..property.clone() }];
+    Object { tag: Some(tag), plugin, id: None, properties, location: property.location.clone() }
 }
 
 fn is_real(kind: &Kind) -> bool {

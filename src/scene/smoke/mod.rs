@@ -22,7 +22,7 @@ use crate::{
             roles::Roles,
             sequence::{Clock, Sequence},
         },
-        grid::{Catalogue, FARTHEST, Held, too_far},
+        grid::{Catalogue, FARTHEST, Held, Velocities, too_far},
     },
 };
 use parameters::{Parameters, Up};
@@ -144,7 +144,9 @@ fn container(
     if given.up == Up::Auto && read.is_z_up && around.is_y_up && !given.is_turned() {
         given.up = Up::Z;
     }
-    let room = around.shutter.ways(velocities.map(|bound| given.velocity_scale * bound));
+    given.velocity_scale = given.velocity_scale.or(velocities.unit);
+    let scale = given.velocity_scale.unwrap_or(1.0);
+    let room = around.shutter.ways(velocities.bounds.map(|bound| scale * bound));
     let times = (room[1].max(-room[0]) / (high - low)).max_element();
     if times > FARTHEST {
         return Err(too_far(times).at(given.location));
@@ -159,8 +161,8 @@ struct Read {
     labels: Vec<Label>,
     is_z_up: bool,
     held: Held,
-    /// Bounds of its velocities, where it `moves`.
-    velocities: [DVec3; 2],
+    /// Its velocities, where it `moves`.
+    velocities: Velocities,
 }
 
 impl Read {

@@ -33,8 +33,8 @@ pub struct Parameters<'a> {
     pub emission_scale: f64,
     /// Fraction of light that is scattered, not absorbed; where a grid gives a colour, a factor of that.
     pub albedo: Option<Spectrum>,
-    /// What its velocity is times (m/s in the file's world).
-    pub velocity_scale: f64,
+    /// What a velocity of 1 stands for (m/s in the file's world); 1 where nobody says.
+    pub velocity_scale: Option<f64>,
     /// The group of its light.
     pub group: Option<String>,
     /// How light scatters.
@@ -83,7 +83,7 @@ impl<'a> Parameters<'a> {
             density_scale: params.float("density_scale")?,
             emission_scale,
             albedo: params.optional_color("albedo")?,
-            velocity_scale: params.float("velocity_scale")?,
+            velocity_scale: params.optional_float("velocity_scale")?,
             group: medium::group(params)?,
             phase: phase_of(params)?,
             exterior: params.child("exterior")?.and_then(|_| params.given("exterior")),

@@ -106,7 +106,8 @@ impl Maker<'_> {
         }
         if !self.taken.velocity.is_empty() {
             parts.push(self.property("velocity_grid", Value::String(self.taken.velocity.join(","))));
-            parts.push(self.property("velocity_scale", Value::Float(self.given.velocity_scale)));
+            let scale = self.given.velocity_scale;
+            parts.extend(scale.map(|scale| self.property("velocity_scale", Value::Float(scale))));
         }
         parts.extend(convert);
         self.plugin("gridvolume", parts)

@@ -35,6 +35,8 @@ pub struct Taken {
     pub color: Vec<String>,
     /// The grid of velocities, or three of a component each, where the smoke moves by them.
     pub velocity: Vec<String>,
+    /// What a velocity of 1 stands for (m/s in the file's world); 1 where nobody says.
+    pub velocity_scale: Option<f64>,
     /// Grids that are not used, and what they are where that is known.
     pub unused: Vec<String>,
 }
@@ -74,6 +76,7 @@ impl Taken {
             glow,
             color: roles.color.iter().map(|number| labels[*number].name.clone()).collect(),
             velocity: roles.velocity.iter().map(|number| labels[*number].name.clone()).collect(),
+            velocity_scale: given.velocity_scale,
             unused: unused.map(|(number, label)| described(label, empty.contains(&number))).collect(),
         }
     }
@@ -115,6 +118,7 @@ impl fmt::Display for Taken {
         }
         if !self.velocity.is_empty() {
             write!(f, ", carried along by \"{}\"", self.velocity.join("\", \""))?;
+            self.velocity_scale.map_or(Ok(()), |scale| write!(f, " (1 is {scale:.4} m/s)"))?;
         }
         if !self.unused.is_empty() {
             write!(f, "; not used: {}", self.unused.join(", "))?;

@@ -317,8 +317,12 @@ fn fire_has_a_light_group() {
 
 /// Smoke of a file with velocities, seen while the shutter is open from `opens` to `closes`.
 fn exposed(parameters: &str, opens: f64, closes: f64) -> Result<(TempDir, Setup)> {
+    exposed_of("houdini.vdb", parameters, opens, closes)
+}
+
+fn exposed_of(name: &str, parameters: &str, opens: f64, closes: f64) -> Result<(TempDir, Setup)> {
     let folder = tempfile::tempdir().unwrap();
-    unpack(folder.path(), "houdini.vdb", "smoke.vdb");
+    unpack(folder.path(), name, "smoke.vdb");
     let text = format!(
         r#"{{"type": "scene", "plume": {{"type": "smoke", "filename": "smoke.vdb", "emission_scale": 0 {parameters}}},
             "sky": {{"type": "constant"}},
@@ -355,6 +359,18 @@ fn every_pass_sees_smoke_where_it_is_then() {
         assert!(found.iter().sum::<f32>() > 0.1 && !seen.contains(&found), "pass {pass}");
         seen.push(found);
     }
+}
+
+/// A frame that Blender 5.0 simulated, in voxels of 0.15625 m.
+#[test]
+fn velocities_of_blender_s_fluids_are_in_voxels_per_0_4_s() {
+    let scale =
+        |name, parameters: &str| exposed_of(name, parameters, 0.0, 0.02).unwrap().1.smoke[0].velocity_scale;
+    assert_eq!(scale("blender_fluids.vdb", ""), Some(2.5 * 0.15625));
+    assert_eq!(scale("blender_fluids.vdb", r#", "velocity_scale": 3"#), Some(3.0));
+    assert_eq!(scale("houdini.vdb", ""), None);
+    let told = exposed_of("blender_fluids.vdb", "", 0.0, 0.02).unwrap().1.smoke[0].to_string();
+    assert!(told.contains("+z up") && told.contains("carried along by \"velocity\" (1 is 0.3906 m/s)"), "{told}");
 }
 
 #[test]

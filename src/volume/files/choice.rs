@@ -28,6 +28,8 @@ pub struct Label {
     pub channels: Option<usize>,
     /// True if +z is up there, as far as the file says who wrote it.
     pub is_z_up: bool,
+    /// True of a grid that Blender's fluids wrote.
+    pub is_of_fluids: bool,
 }
 
 impl Label {

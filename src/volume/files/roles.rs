@@ -257,7 +257,7 @@ mod tests {
             let (name, kind) = name.split_once(':').unwrap_or((name, "1"));
             let class = if kind == "surface" { "level set" } else { "fog volume" }.to_owned();
             let channels = if kind == "surface" { Some(1) } else { kind.parse().ok() };
-            Label { name: name.to_owned(), kind: "any".to_owned(), class, channels, is_z_up: false }
+            Label { name: name.to_owned(), kind: "any".to_owned(), class, channels, ..Label::default() }
         };
         names.iter().map(one).collect()
     }

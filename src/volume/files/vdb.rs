@@ -29,10 +29,11 @@ pub(super) fn label<R: Read + Seek>(input: &mut Input<R>, entry: &Entry) -> Labe
         input.u32()?;
         Metadata::read(input)
     };
-    let Metadata { class, of_blender, .. } = notes().unwrap_or_default();
+    let Metadata { class, of_blender, of_fluids, .. } = notes().unwrap_or_default();
     let label = entry.label();
     let channels = numbers(entry).ok().map(|(_, channels)| channels);
-    Label { class, channels, is_z_up: label.is_z_up || of_blender, ..label }
+    let is_z_up = label.is_z_up || of_blender || of_fluids;
+    Label { class, channels, is_z_up, is_of_fluids: of_fluids, ..label }
 }
 
 /// Reads the grid of `entry`, one of `entries`.

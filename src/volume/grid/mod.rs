@@ -43,7 +43,7 @@ use walk::{Line, Target, Walk};
 pub use advection::{FARTHEST, too_far};
 
 pub use crate::math::Wrap;
-pub use catalogue::{Catalogue, Contents, Held};
+pub use catalogue::{Catalogue, Contents, Held, Velocities};
 pub use file::{Source, Values, is_volume, to_vol};
 pub use lattice::Filter;
 

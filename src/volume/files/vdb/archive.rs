@@ -104,6 +104,8 @@ pub(super) struct Metadata {
     pub half: bool,
     /// True if Blender wrote it.
     pub of_blender: bool,
+    /// True if its fluids did.
+    pub of_fluids: bool,
 }
 
 impl Metadata {
@@ -112,7 +114,7 @@ impl Metadata {
         let mut metadata = Self::default();
         for _ in 0..input.u32()? {
             let (name, kind) = (input.text()?, input.text()?);
-            metadata.of_blender |= name == FLUIDS;
+            metadata.of_fluids |= name == FLUIDS;
             match (name.as_str(), kind.as_str()) {
                 ("class", "string") => metadata.class = input.text()?,
                 ("creator", "string") => metadata.of_blender |= input.text()?.starts_with(BLENDER),
