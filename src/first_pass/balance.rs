@@ -1,4 +1,4 @@
-//! How much light links should bring: lines of an element tell what part of its light meets anything.
+//! How much light links should bring: lines from an element measure the part of its light that meets something.
 
 use super::{elements::Elements, scattering::Element};
 use crate::{
@@ -13,14 +13,14 @@ use crate::{
 };
 use rayon::prelude::*;
 
-/// Lines by which an element looks around.
+/// Number of lines of an element.
 const LINES: usize = 128;
-/// Relative noise up to which the lines of a cluster are believed. Chosen by hand, not derived.
+/// Most relative noise with which the lines of a cluster are trusted. Chosen by hand, not derived.
 const NOISE: f32 = 0.02;
-/// Of the random numbers of lines.
+/// Seed of the random numbers of lines.
 const SEED: u64 = 0x6261_6c61_6e63_6500;
 
-/// The part of the light of each element that meets something, of what it sends into each bin.
+/// For each element, the part of the light sent into each bin that meets something.
 pub(super) fn meets(scene: &Scene, elements: &Elements) -> Vec<Distribution> {
     let of = |(node, element): (&u32, &Element)| {
         let mut part = Distribution::dark(element.source.bins);
@@ -35,7 +35,7 @@ pub(super) fn meets(scene: &Scene, elements: &Elements) -> Vec<Distribution> {
     elements.hierarchy.elements.par_iter().zip(&elements.all).map(of).collect()
 }
 
-/// What is left of 1 where it meets something, along a line of a `node` into a bin.
+/// Transmittance along a line of a `node` into a bin, up to where the line meets something; 0 if it meets nothing.
 fn met(
     scene: &Scene,
     elements: &Elements,
@@ -56,8 +56,9 @@ fn met(
     if arrives { flight.state.ratio.to_spectrum() * flight.state.tint } else { Spectrum::ZERO }
 }
 
-/// What is to come to each element if all are as bright, over what was `found` to come, in the smallest cluster around it whose lines
-/// have little noise: in a closed room, where all of them meet something, that is the element.
+/// For each element, with all elements equally bright: the light due over the light `found`, both in the smallest
+/// cluster around it whose lines have little noise. In a closed room, where all lines meet something, this is the
+/// element itself.
 pub(super) fn coming(hierarchy: &Hierarchy, meets: &[Distribution], found: &[Spectrum]) -> Vec<Spectrum> {
     let due: Vec<Spectrum> = meets.iter().map(|meets| meets.sum() * meets.bins.angle()).collect();
     let parts: Vec<f32> =

@@ -21,37 +21,37 @@ use crate::{
 };
 use rayon::prelude::*;
 
-/// Of the random numbers that choose points.
+/// Seed of the random numbers that choose points.
 const SEED: u64 = 0x656c_656d_656e_7473;
-/// Points of an element: it has half of them at least, and about as many on average.
+/// Points of an element, on average; each has at least half as many.
 const PER_ELEMENT: usize = 32;
-/// Points in a medium's box for each that stands for a part of it: of those, more are taken where the medium is dense.
+/// Candidate points in a medium's box per point that is kept; more are kept where the medium is dense.
 const CANDIDATES: usize = 2;
-/// Extinction of what emits without (1/m).
+/// Extinction assumed for media that emit without any (1/m).
 const LEAST_EXTINCTION: f32 = 1e-6;
 /// Length of the mean normal from which on an element faces one way.
 const FLAT: f32 = 0.98;
-/// The least part of a box's longest edge that half of any other has.
+/// Least half edge of a box, over its longest edge.
 const THICKNESS: f32 = 0.01;
-/// How much larger boxes are than those around points.
+/// Factor by which boxes are larger than those around their points.
 const WIDENED: f32 = 1.2;
-/// Places in a medium belong to an element that is no further away than this part of its radius.
+/// A place in a medium belongs to an element at most this many radii away.
 const REACH: f32 = 4.0;
 
-/// All of them, and the points that stand for them.
+/// All elements, and the points that stand for them.
 pub(super) struct Elements {
     pub hierarchy: Hierarchy,
     /// In the order of the hierarchy.
     pub points: Vec<Point>,
-    /// How much of surfaces or media those up to each stand for (m^2).
+    /// Cumulative sums of the measures of points (m^2).
     sums: Vec<f64>,
     pub all: Vec<Element>,
-    /// How the light that each node sends is kept.
+    /// The bins of the light that each node sends.
     pub bins: Vec<Bins>,
 }
 
 impl Elements {
-    /// About `number` of surfaces, and as many of media.
+    /// About `number` elements of surfaces, and as many of media.
     pub(super) fn of(scene: &Scene, number: usize) -> Self {
         let mut known = on_surfaces(scene, number * PER_ELEMENT);
         known.extend(in_media(scene, number * PER_ELEMENT));
@@ -74,7 +74,7 @@ impl Elements {
         Self { hierarchy, points, sums, all, bins }
     }
 
-    /// One of the points of a node, for `u` in [0, 1): each as often as it stands for much.
+    /// One of the points of a node, for `u` in [0, 1), in proportion to their measures.
     pub(super) fn pick(&self, node: u32, u: f64) -> &Point {
         let own = &self.hierarchy.nodes[node as usize].points;
         let (first, last) = (own.start as usize, own.end as usize - 1);
@@ -108,12 +108,12 @@ impl Elements {
         nodes.zip(sent).map(power).collect()
     }
 
-    /// That of all together (W).
+    /// The power of all elements together (W).
     pub(super) fn power(&self, sent: &[Distribution]) -> f32 {
         self.powers(sent).iter().sum()
     }
 
-    /// The element of a place; none beyond all of them: fog that has no end has elements near the scene alone.
+    /// The element of a place; none beyond all elements: endless fog has elements near the scene alone.
     pub(super) fn at(&self, place: &Interaction) -> Option<u32> {
         let element = self.hierarchy.element(place.position(), place.normal())?;
         let node = self.hierarchy.node(element);
@@ -121,7 +121,7 @@ impl Elements {
         (within || place.normal().is_some()).then_some(element)
     }
 
-    /// True if an element gets what comes to a place from unit `towards`.
+    /// True if an element receives light that comes to a place from unit `towards`.
     pub(super) fn receives(&self, scene: &Scene, place: &Interaction, towards: Vec3) -> bool {
         let is_dark = match place {
             Interaction::Surface(point) => brightness(scene, point, towards) == 0.0,
@@ -137,7 +137,8 @@ impl Elements {
     }
 }
 
-/// Those of all nodes: a cluster is as its parts if they are alike, and surfaces that face one way are like one.
+/// The bins of all nodes. A cluster has the bins of its parts if these are alike; surfaces that face one way count as
+/// one.
 fn bins(hierarchy: &Hierarchy, all: &[Element]) -> Vec<Bins> {
     let mut found = vec![Bins::Equal(BINS); hierarchy.nodes.len()];
     for (index, node) in hierarchy.nodes.iter().enumerate().rev() {
@@ -179,7 +180,7 @@ fn on_surfaces(scene: &Scene, number: usize) -> Vec<(Point, Sample)> {
     shapes.par_iter().flat_map(of_shape).collect()
 }
 
-/// What a point of a shape reflects or emits towards unit `direction`, as luminance: of even light around.
+/// Luminance that a point of a shape sends in unit `direction`: reflected from uniform unit radiance, and emitted.
 fn brightness(scene: &Scene, point: &SurfacePoint, direction: Vec3) -> f32 {
     let wi = point.shading.to_local(direction);
     let albedo = scene.at(point, |bsdf, uv| bsdf.albedo(uv, wi));
@@ -197,7 +198,7 @@ fn on_surface(scene: &Scene, point: SurfacePoint, area: f32) -> (Point, Sample) 
     (Point::on(scene, point, sides.map(|side| side > 0.0)), sample)
 }
 
-/// What elements should not mix, in steps of a fifth: what differs by rounding alone is the same.
+/// An amount that elements should not mix, in steps of about a fifth: values that differ by rounding alone are equal.
 pub(super) fn kind(amount: f32) -> f32 {
     (4.0 * amount.max(f32::MIN_POSITIVE).log2()).round()
 }
@@ -247,7 +248,7 @@ fn around(scene: &Scene) -> Bounds {
     points.fold(scene.geometry.bounds(), Bounds::union)
 }
 
-/// Of even points in a box, those that lie in `medium`: `number` of them, the more the denser it is.
+/// About `number` points in `medium`, chosen from uniform points of a box: more where it is denser.
 fn in_medium(scene: &Scene, medium: MediumIndex, within: Bounds, number: usize) -> Vec<(Point, Sample)> {
     let candidates = CANDIDATES * number;
     let emission = scene.lights.of_medium(medium).map(|(_, emission)| emission);
@@ -270,7 +271,7 @@ fn in_medium(scene: &Scene, medium: MediumIndex, within: Bounds, number: usize) 
     let (mut due, each) = (0.5, number as f32 / found.len().max(1) as f32);
     let mut kept = Vec::new();
     for (point, sigma_t) in found {
-        // As many as if each had the mean density, and as many by its own.
+        // Half of the points by the mean density, half by their own.
         let chance = (0.5 * each * (1.0 + sigma_t.luminance() / mean)).min(1.0);
         due += chance;
         if due >= 1.0 {

@@ -1,4 +1,4 @@
-//! What lamps without a surface bring to the elements directly: points, beams and skies, which no element is.
+//! Direct light at the elements from lamps without a surface: points, beams and skies, which are no elements.
 
 use super::{elements::Elements, point::Point};
 use crate::{
@@ -12,14 +12,14 @@ use rayon::prelude::*;
 
 /// Samples of each point of an element.
 const SAMPLES: u64 = 4;
-/// Of their random numbers.
+/// Seed of their random numbers.
 const SEED: u64 = 0x6c61_6d70_7300;
 
 fn is_lamp(light: &Light) -> bool {
     !matches!(light.emitter.kind, Kind::Surface(_) | Kind::Medium(_))
 }
 
-/// The light that comes to each element.
+/// The direct light that comes to each element.
 pub(super) fn light(scene: &Scene, elements: &Elements) -> Vec<Distribution> {
     let has_lamps = scene.lights.all.iter().any(is_lamp);
     let lit = |(element, node): (usize, &u32)| {

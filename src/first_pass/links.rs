@@ -1,4 +1,5 @@
-//! Radiance clustering (P03T sec. 4.2): links between elements and clusters, refined where much light goes, carry light until no more comes.
+//! Radiance clustering (P03T sec. 4.2): links between elements and clusters carry light until it settles. They are
+//! refined where they carry much.
 
 use super::{
     balance,
@@ -22,21 +23,21 @@ use std::collections::BTreeMap;
 
 /// Pairs of nodes that are linked.
 pub(super) const NUMBER: usize = 1 << 19;
-/// How often links are made: each time by the light that those before have carried, and four times as many.
+/// Rounds of making links: each uses the light that the links before have carried, and makes four times as many.
 const ROUNDS: u32 = 3;
-/// Lines by which a link is measured.
+/// Lines that measure a link.
 const LINES: usize = 4;
-/// Pairs of points that are tried for them.
+/// Pairs of points tried for these lines.
 const TRIES: usize = 16;
 /// Links of an element that walks may follow.
 const FOLLOWED: usize = 64;
-/// Points of nodes that a line joins count as far apart as this part of both radii, at least.
+/// Least distance between the ends of a line, over the sum of both nodes' radii.
 const LEAST_APART: f32 = 0.1;
-/// Part of all power that one more bounce brings, below which no more is to come.
+/// Light has settled when one more bounce brings at most this part of all power.
 const SETTLED: f32 = 1e-3;
-/// How often light is carried, at most.
+/// Most bounces of light.
 const MOST_BOUNCES: u32 = 64;
-/// Of the random numbers of lines.
+/// Seed of the random numbers of lines.
 const SEED: u64 = 0x6c69_6e6b_7300;
 
 /// What one of a link's lines carries.
@@ -57,13 +58,14 @@ struct Link {
 }
 
 impl Link {
-    /// |cos| that what its sender sends lacks: that of sides.
+    /// |cos| at the sender, if the light that it sends does not contain it: for sides.
     #[inline]
     fn cosine_for(&self, sent: Bins) -> f32 {
         if matches!(sent, Bins::Sides(_)) { self.cosine } else { 1.0 }
     }
 
-    /// The unit direction to the sender from a place in the cluster where the line ends, and how much more comes there than at that end.
+    /// The unit direction to the sender from a place in the receiving cluster, and the irradiance there over that at
+    /// the line's end.
     fn seen_from(&self, place: Vec3) -> (Vec3, f32) {
         let Some((towards, _, squared)) = measure::between(place, self.from) else {
             return (self.towards, 1.0);
@@ -76,7 +78,7 @@ impl Link {
 /// All light there is.
 struct State<'a> {
     elements: &'a Elements,
-    /// What each element scatters of light that comes from lamps directly.
+    /// The direct light of lamps that each element scatters.
     direct: Vec<Distribution>,
     /// What each element scatters.
     values: Vec<Distribution>,
@@ -104,8 +106,8 @@ pub(super) fn solve(
     linked(scene, elements, most_bounces, number).0.values
 }
 
-/// Where each element gets the light that others scatter: the senders of its links and of those to clusters that it is in, as often as light comes from
-/// each. A link whose lines fail to reach the sender is followed the less often (P03T eq. 5.5).
+/// Where each element gets scattered light from: the senders of links to it and to clusters around it, each with a
+/// probability in proportion to its light. A link whose lines miss the sender is followed less often (P03T eq. 5.5).
 pub(super) fn aims(scene: &Scene, elements: &Elements, number: usize) -> Vec<Aims> {
     let (mut state, links) = linked(scene, elements, MOST_BOUNCES, number);
     state.emits = 0.0;
@@ -127,7 +129,7 @@ pub(super) fn aims(scene: &Scene, elements: &Elements, number: usize) -> Vec<Aim
     elements.hierarchy.elements.par_iter().enumerate().map(aims).collect()
 }
 
-/// Light as links have carried it, and those.
+/// The light that links have carried, and these links.
 fn linked<'a>(
     scene: &Scene,
     elements: &'a Elements,
@@ -189,14 +191,14 @@ impl<'a> State<'a> {
         self.sent = all;
     }
 
-    /// What comes by a link where its sender is in unit direction `towards`: perpendicular irradiance (W/m^2).
+    /// Perpendicular irradiance (W/m^2) by a link whose sender is in unit direction `towards`.
     #[inline]
     fn carried(&self, link: &Link, towards: Vec3) -> Spectrum {
         let sent = &self.sent[link.sender as usize];
         sent.at(-towards) * link.part * link.cosine_for(sent.bins)
     }
 
-    /// Carries light until no more comes, or it is scattered `most` times.
+    /// Carries light until it settles or has scattered `most` times.
     fn settle(&mut self, links: &[Vec<Link>], most: u32) {
         self.balance(links);
         let mut all: Vec<_> = self.direct.iter().map(|direct| Distribution::dark(direct.bins)).collect();
@@ -235,8 +237,9 @@ impl<'a> State<'a> {
         hierarchy.elements.par_iter().enumerate().map(receive).collect()
     }
 
-    /// The unit direction that a link to `above` brings light from to `node`, which is in it, and how much more comes than at the end of
-    /// its line. What comes to a cluster is pushed down at once. Light that goes one way must not be turned: it is seen from each place.
+    /// The unit direction from which a link to the cluster `above` lights its part `node`, and the irradiance there
+    /// over that at the line's end. Light to a cluster is pushed down at once. Each part has its own direction to the
+    /// sender: collimated light must not be turned.
     fn pushed(&self, link: &Link, above: u32, node: u32) -> (Vec3, f32) {
         if above == node {
             return (link.towards, 1.0);
@@ -244,9 +247,10 @@ impl<'a> State<'a> {
         link.seen_from(self.elements.hierarchy.nodes[node as usize].centre())
     }
 
-    /// Makes up for links that have too few lines in some directions and too many in others. As much of what an element sends into a bin arrives as
-    /// the element's own lines say: a direction that brought more would keep its light in thick media for ever. As much comes to an element as its
-    /// own lines say, if all elements are as bright. [`State::carry`] makes up for bins that no link serves.
+    /// Corrects links that have too few lines in some directions and too many in others. The part of an element's light
+    /// that arrives is, for each bin, the one that the element's own lines measure: a direction that brought more would
+    /// keep its light in thick media for ever. If all elements are equally bright, an element receives what its own
+    /// lines measure. [`State::carry`] makes up for bins that no link serves.
     fn balance(&mut self, links: &[Vec<Link>]) {
         self.coming.fill(Spectrum::ONE);
         self.leaving = self.leaving(links);
@@ -254,7 +258,7 @@ impl<'a> State<'a> {
         self.leaving = self.leaving(links);
     }
 
-    /// What is to leave each element, over what links bring of it.
+    /// For each bin of each element: the light due to arrive elsewhere over the light that links bring there.
     fn leaving(&self, links: &[Vec<Link>]) -> Vec<Distribution> {
         let (delivered, hierarchy) = (self.delivered(links), &self.elements.hierarchy);
         let over = |(node, meets): (&u32, &Distribution)| {
@@ -266,7 +270,7 @@ impl<'a> State<'a> {
         hierarchy.elements.par_iter().zip(&self.meets).map(over).collect()
     }
 
-    /// What is to come to each element if all are as bright, over what links bring then.
+    /// For each element, with all elements equally bright: the light due over the light that links bring.
     fn coming(&mut self, links: &[Vec<Link>]) -> Vec<Spectrum> {
         let even = self.meets.iter().map(|meets| Distribution::even(meets.bins)).collect();
         let (values, emits) = (std::mem::replace(&mut self.values, even), std::mem::take(&mut self.emits));
@@ -277,7 +281,7 @@ impl<'a> State<'a> {
         balance::coming(&self.elements.hierarchy, &self.meets, &found)
     }
 
-    /// The power (W) that comes by `links` of a unit of what each node sends into each bin.
+    /// The power (W) that `links` deliver per unit that each node sends into each bin.
     fn delivered(&self, links: &[Vec<Link>]) -> Vec<Distribution> {
         let mut of_senders = vec![Vec::new(); links.len()];
         for (receiver, links) in links.iter().enumerate() {
@@ -304,7 +308,7 @@ impl<'a> State<'a> {
         }
     }
 
-    /// What elements scatter of what links carry: of all light that meets something, as much as comes.
+    /// The light that elements scatter after links carried it, scaled so that all light that meets something arrives.
     fn carry(&self, links: &[Vec<Link>]) -> Vec<Distribution> {
         let incoming = self.incoming(links);
         let scale = distribution::over(self.arriving(), self.arrived(&incoming));
@@ -321,7 +325,7 @@ impl<'a> State<'a> {
         self.meets.iter().enumerate().map(part).sum()
     }
 
-    /// That which comes to them (W).
+    /// The power that comes to elements (W).
     fn arrived(&self, incoming: &[Distribution]) -> Spectrum {
         let hierarchy = &self.elements.hierarchy;
         let received = |(index, incoming): (usize, &Distribution)| {
@@ -330,7 +334,7 @@ impl<'a> State<'a> {
         incoming.iter().enumerate().map(received).sum()
     }
 
-    /// About so many, by the nodes that they lead to.
+    /// About `number` links, by their receiving nodes.
     fn links(&self, scene: &Scene, number: usize) -> Vec<Vec<Link>> {
         let hierarchy = &self.elements.hierarchy;
         let pairs = oracle::refine(hierarchy, &self.power, number);

@@ -1,6 +1,6 @@
-//! The first pass: a coarse solution of the scene, in elements (P03T ch. 4). Either links between elements and clusters carry light
-//! ([`mod@links`], sec. 4.2), or particles do ([`particles`], sec. 4.3). The elements, what lamps bring to them directly, and how they scatter
-//! are the same.
+//! The first pass: a coarse solution of the scene, in elements (P03T ch. 4). Either links between elements and clusters
+//! carry light ([`mod@links`], sec. 4.2), or particles do ([`particles`], sec. 4.3). The elements, their direct light
+//! and their scattering are the same.
 
 mod balance;
 mod elements;
@@ -22,10 +22,12 @@ use elements::Elements;
 
 /// Elements of surfaces, and of media.
 const ELEMENTS: usize = 2048;
-/// Pairs of nodes whose links guide walks: those ask every link of an element for the density of a direction.
+/// Pairs of nodes whose links guide walks. There are fewer, for the density of a direction is a sum over all links of
+/// an element.
 const GUIDING: usize = 1 << 16;
 
-/// What is scattered everywhere in `scene` of light that is scattered so many times at most, by links or else by particles.
+/// The radiance scattered everywhere in `scene` by light that scatters at most `most_bounces` times; found by links or
+/// by particles.
 pub fn solve(scene: &Scene, method: FirstPass, most_bounces: u32) -> Solution {
     let elements = Elements::of(scene, ELEMENTS);
     let values = match method {

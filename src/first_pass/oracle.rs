@@ -1,10 +1,10 @@
-//! Where light goes from one node to another as a whole: the one decision that links and particles share.
+//! Decides where light goes from one node to another as a whole, for links and for particles.
 
 use crate::guide::hierarchy::{Hierarchy, Node};
 use std::{cmp::Ordering, collections::BinaryHeap};
 
-/// The power (W) that may be misplaced if `receiver` takes the light of `sender`, which sends so much `power`, as if both were points: what comes, times by
-/// how much distances and directions vary over both.
+/// The power (W) that may be misplaced if a `sender` of this `power` lights `receiver` as if both were points: the
+/// power that arrives, times the variation of distance and direction over both.
 pub(super) fn error(sender: &Node, receiver: &Node, power: f32) -> f32 {
     let [a, b] = [sender.radius(), receiver.radius()];
     let distance = sender.centre().distance(receiver.centre()).max(a + b).max(f32::MIN_POSITIVE);
@@ -36,7 +36,7 @@ impl Ord for Pair {
     }
 }
 
-/// Between all nodes that send some `power`, about so many pairs: those that may misplace most are divided first.
+/// About `number` pairs between all nodes that send `power`. The pairs that may misplace most are divided first.
 pub(super) fn refine(hierarchy: &Hierarchy, power: &[f32], number: usize) -> Vec<Pair> {
     let pair = |sender: u32, receiver: u32| {
         let [a, b] = [sender, receiver].map(|node| &hierarchy.nodes[node as usize]);

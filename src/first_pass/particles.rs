@@ -1,5 +1,5 @@
-//! Hierarchical Monte Carlo radiosity (P03T sec. 4.3): particles carry the power that elements have not sent yet, from line to line;
-//! each is deposited at the level of the hierarchy that suffices.
+//! Hierarchical Monte Carlo radiosity (P03T sec. 4.3): particles carry the unsent power of elements along lines. Each
+//! is deposited at the highest level of the hierarchy that suffices.
 
 use super::{elements::Elements, lamps, oracle};
 use crate::{
@@ -16,19 +16,19 @@ use crate::{
 };
 use rayon::prelude::*;
 
-/// Lines that carry the power that lamps and emitting elements send; later ones are fewer as power is less.
+/// Lines for the power of lamps and emitting elements; later rounds have fewer lines as they have less power.
 pub(super) const LINES: usize = 1 << 20;
-/// Of that power, what is not worth sending.
+/// Part of that power that is not worth sending.
 const LEFT: f32 = 1e-3;
-/// All lines, at most: white media hold light for thousands of rounds.
+/// Most lines in all: white media hold light for thousands of rounds.
 const MOST_LINES: usize = 1 << 23;
-/// Of the lines that are left, a round takes one in so many at most, so that some are left for the last.
+/// A round takes at most one in so many of the remaining lines, so that some are left for the last.
 const AT_ONCE: usize = 8;
-/// Of all power that is sent, what a line may misplace (see [`oracle::error`]).
+/// Part of all sent power that a line may misplace (see [`oracle::error`]).
 const MISPLACED: f32 = 1e-8;
-/// Mirrors, panes and lenses that a particle passes, at most.
+/// Most mirrors, panes and lenses that a particle passes.
 const MOST_SPECULAR: u32 = 64;
-/// Of the random numbers of lines.
+/// Seed of the random numbers of lines.
 const SEED: u64 = 0x6c69_6e65_7300;
 
 /// The radiance that elements scatter.
@@ -72,7 +72,7 @@ pub(super) fn solve(
 /// What a round of lines carries.
 struct Sent {
     unsent: Vec<Distribution>,
-    /// That of each element (W), as luminance.
+    /// The power of each element (W), as luminance.
     power: Vec<f32>,
 }
 
@@ -98,7 +98,7 @@ fn deposit(scene: &Scene, elements: &Elements, sent: &Sent, number: usize, round
         .into_par_iter()
         .map(|line| {
             let mut stream = Stream::new(SEED, line as u64, round, Purpose::Study);
-            // Each element sends its share of lines, but for one.
+            // Each element sends its share of lines, to within one.
             let (element, probability) =
                 chances.sample_precisely((line as f64 + stream.uniform_precisely()) / number as f64);
             let start = Start { element, over: (probability * number as f64).recip() as f32, hero: line % 3 };
@@ -166,7 +166,7 @@ fn fly(
     deposits
 }
 
-/// The highest node with the place in it that may take light as a whole.
+/// The highest node around the place that may receive the light as a whole.
 fn receiver(
     elements: &Elements,
     misplaced: f32,

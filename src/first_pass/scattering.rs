@@ -15,15 +15,15 @@ use crate::{
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Of the random numbers of reflection.
+/// Seed of the random numbers of reflection.
 const SEED: u64 = 0x7265_666c_6563_7400;
 /// Bins along each edge of the square of all directions, where elements look different from everywhere.
 pub(super) const BINS: u32 = 8;
 /// The least |cos| at which light comes to an element.
 const GRAZING: f32 = 0.1;
-/// Points of an element by which it scatters.
+/// Points of an element that determine its scattering.
 const LOOKED_AT: usize = 4;
-/// Samples that say how much of the light from a bin is scattered.
+/// Samples of the part of a bin's light that is scattered.
 const REFLECTED: usize = 16;
 
 /// How an element of surfaces or of a medium scatters.
@@ -32,14 +32,14 @@ pub(super) struct Element {
     pub source: Distribution,
     /// See [`Distribution::scattered`].
     scattering: Arc<[Spectrum]>,
-    /// What that is multiplied with.
+    /// A factor on it.
     tint: Spectrum,
     /// Unit, on average; none in a medium.
     normal: Option<Vec3>,
 }
 
 impl Element {
-    /// That of `points`, where media scatter as `phases` say.
+    /// The element of `points`; media scatter by `phases`.
     pub(super) fn of(scene: &Scene, points: &[Point], phases: &[Phase]) -> Self {
         match points[points.len() / 2].interaction {
             Interaction::Surface(_) => of_surfaces(scene, points),
@@ -52,7 +52,7 @@ impl Element {
         cosine(self.normal, towards)
     }
 
-    /// That of the middle of a bin; 1 where the bin's angle has it.
+    /// The |cos| of the middle of a bin; 1 where the bin's angle contains it.
     pub(super) fn cosine_of(&self, bin: usize) -> f32 {
         cosine_of(self.normal, self.source.bins, bin)
     }
@@ -89,7 +89,7 @@ fn cosine_of(normal: Option<Vec3>, bins: Bins, bin: usize) -> f32 {
 /// How a medium scatters light between bins, with albedo 1.
 pub(super) type Phase = (Bins, Arc<[Spectrum]>);
 
-/// That of each.
+/// The phase of each medium.
 pub(super) fn phases(scene: &Scene) -> Vec<Phase> {
     scene
         .media
@@ -109,8 +109,8 @@ pub(super) fn phases(scene: &Scene) -> Vec<Phase> {
         .collect()
 }
 
-/// Scattering between all bins: a row of where light comes from for each bin that it goes to, by the means of `value` over directions
-/// of both.
+/// Scattering between all bins, by means of `value` over directions of both: a row of incoming bins for each outgoing
+/// one.
 fn matrix(bins: Bins, value: impl Fn(Vec3, Vec3) -> Spectrum) -> Vec<Spectrum> {
     const ASIDE: [[f32; 2]; 4] = [[0.2, 0.4], [0.6, 0.2], [0.4, 0.8], [0.8, 0.6]];
     let of = |bin: usize| ASIDE.map(|at| bins.direction(bin, at));
@@ -122,7 +122,8 @@ fn matrix(bins: Bins, value: impl Fn(Vec3, Vec3) -> Spectrum) -> Vec<Spectrum> {
     all.iter().flat_map(|to| all.iter().map(|from| mean(from, to)).collect::<Vec<_>>()).collect()
 }
 
-/// Makes the part `albedo` of even light that comes from each bin leave, over all directions; `cosine` is that of a bin.
+/// Scales scattering: the part `albedo` of uniform light from each bin leaves, over all directions. `cosine` is that of
+/// a bin.
 fn conserve(
     bins: Bins,
     matrix: &mut [Spectrum],

@@ -1,5 +1,5 @@
-//! Where the ways of walks cross that reach the image, wherever they come from: at its portals. A few dozen walks tell, long
-//! before any table of directions knows anything.
+//! Portals: the places where paths that reach the image cross, wherever they come from. A few dozen walks show them,
+//! long before any table of directions is of use.
 
 use super::{
     Lesson,
@@ -8,19 +8,19 @@ use super::{
 use crate::{math::Vec3, sampling::Thinning};
 use rayon::prelude::*;
 
-/// Portals, at most.
+/// Most portals.
 const MOST: usize = 4;
-/// Lessons of each fold whose crossings are looked at, each with each.
+/// Lessons of each fold whose crossings are tried, pair by pair.
 const CROSSED: usize = 32;
 /// Lessons of each fold that judge.
 const JUDGES: usize = 1024;
-/// Radii, from this power of a half of the extent of all lessons on, each half of the one before.
+/// Radii: the first is the extent of all lessons times this power of a half, each further one half of the one before.
 const LARGEST: i32 = 3;
 const RADII: usize = 6;
-/// Gain of a lesson's log likelihood below which a portal is none. Measured in scenes/efficiency: keyhole 0.5 to 1.3, skylight 0.15
-/// to 0.7, headlights and door_ajar up to 0.04, in others nothing.
+/// Least gain in a lesson's log likelihood by a portal. Measured in scenes/efficiency: keyhole 0.5 to 1.3, skylight
+/// 0.15 to 0.7, headlights and door_ajar up to 0.04, in others nothing.
 const LEAST: f64 = 0.1;
-/// A portal that fewer lessons of a fold go through is one by chance.
+/// Fewest lessons of a fold through a portal: one with fewer is chance.
 const FEWEST: u32 = 5;
 /// Rays whose squared sine is less cross anywhere.
 const PARALLEL: f32 = 1e-3;
@@ -64,7 +64,7 @@ struct Judge {
 /// One of two independent parts of all lessons.
 struct Fold {
     judges: Vec<Judge>,
-    /// Of all that there were.
+    /// Total weight of the judges.
     weight: f64,
 }
 
@@ -82,8 +82,8 @@ impl Fold {
         Self { weight: judges.iter().map(|judge| judge.weight).sum(), judges }
     }
 
-    /// What spheres of these `radii_squared` around `centre` add to the log likelihood of a lesson if each gets as many directions
-    /// as go through, and the others remain as they are.
+    /// Gains in a lesson's log likelihood by spheres of these `radii_squared` around `centre`, if each gets as many
+    /// directions as pass through it and the others remain as they are.
     fn gains(&self, centre: Vec3, radii_squared: &[f32; RADII]) -> [f64; RADII] {
         let (mut count, mut through, mut gains) = ([0; RADII], [0.0; RADII], [0.0; RADII]);
         for Judge { lesson, weight } in &self.judges {
@@ -119,7 +119,7 @@ fn crossings(judges: &[Judge]) -> Vec<Vec3> {
     pairs.filter_map(|(a, b)| crossing(a, b)).collect()
 }
 
-/// The middle between the points of two rays that are nearest to each other; none if one is an origin, or where they are parallel.
+/// The midpoint between the closest points of two rays; none if one of these is an origin, or if the rays are parallel.
 fn crossing(a: &Lesson, b: &Lesson) -> Option<Vec3> {
     let (u, v, between) = (a.direction, b.direction, b.position - a.position);
     let cosine = u.dot(v);

@@ -1,5 +1,5 @@
-//! Directions that walks should take from the places of a cell: how many of them aim at each portal, a table of others, and how
-//! many are left to the BSDF or the phase function.
+//! Directions of walks from the places of a cell: the share that aims at each portal, a table of others, and the share
+//! that is left to the BSDF or the phase function.
 
 use super::{
     Lesson, Portal,
@@ -13,34 +13,34 @@ use crate::{
     },
 };
 
-/// What a, the BSDF sampling fraction among directions that aim at no portal, may be. It multiplies what a path weighs by 1 / a at
-/// a vertex, at most, and the choice looks at one vertex at a time.
+/// Choices of a, the BSDF sampling fraction among directions that aim at no portal. At a vertex, the weight of a path
+/// grows by at most 1 / a; the choice of a looks at one vertex at a time.
 const BSDF_FRACTIONS: [f32; 4] = [0.5, 0.65, 0.8, 1.0];
-/// Directions, as [`effective`] counts them, that tell nothing if there are fewer.
+/// Fewest directions, as [`effective`] counts them, that can be learnt from.
 pub(super) const ENOUGH: f64 = 32.0;
-/// The part of the directions of any cell that aims at each portal, at least: where few have been seen to go through it, those few
-/// would weigh as much as without a guide.
+/// Least part of a cell's directions that aims at each portal: where few were seen to pass through it, these few would
+/// else weigh as much as without a guide.
 const LEAST_AIMED: f32 = 0.05;
-/// The most that aim at portals.
+/// Largest part that aims at portals.
 const MOST_AIMED: f32 = 0.5;
 
-/// The directions of a cell: shares that are 1 together.
+/// The directions of a cell; the shares sum to 1.
 #[derive(Clone, Debug)]
 pub(super) struct Directions {
-    /// That of the BSDF or the phase function.
+    /// The share of the BSDF or the phase function.
     pub unguided: f32,
-    /// Those that aim at portals.
+    /// The shares that aim at portals.
     aimed: Vec<(f32, Portal)>,
-    /// That of a table, if there is one.
+    /// The share of a table, if there is one.
     tabled: Option<(f32, Table)>,
 }
 
 /// Directions that aim at no portal.
 #[derive(Clone, Debug)]
 enum Table {
-    /// Those that walks took.
+    /// Directions that walks took.
     Learnt(Quadtree),
-    /// Those to senders of links.
+    /// Directions to senders of links.
     Linked(Aims),
 }
 
@@ -48,7 +48,7 @@ enum Table {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tabulator<'a> {
     pub basis: Basis,
-    /// Those of [`Basis::Links`].
+    /// The links of [`Basis::Links`].
     pub links: Option<&'a Links>,
 }
 
@@ -99,7 +99,8 @@ impl Directions {
     }
 }
 
-/// How many directions aim at each of `portals`: as many as `lessons` go through it, which are then in balance with the others.
+/// Shares of directions that aim at each of `portals`: in proportion to the `lessons` through it, in balance with the
+/// others.
 fn aimed(lessons: &[&Lesson], portals: &[Portal]) -> Vec<(f32, Portal)> {
     let mut aimed: Vec<(f32, Portal)> = portals.iter().map(|portal| (0.0, *portal)).collect();
     for lesson in lessons {
@@ -115,7 +116,8 @@ fn aimed(lessons: &[&Lesson], portals: &[Portal]) -> Vec<(f32, Portal)> {
     aimed
 }
 
-/// a, by the second moment that what one half of the `lessons` tells has where the other half guides; 1 where nothing does.
+/// Chooses a, by the second moment of each half of the `lessons` under a table of the other half; 1 where there is no
+/// table.
 fn part_unguided(lessons: &[&Lesson], tabulator: Tabulator<'_>) -> f32 {
     let half = |fold| lessons.iter().copied().filter(|lesson| lesson.fold == fold).collect::<Vec<_>>();
     let [Some(even), Some(odd)] = [1, 0].map(|other| tabulator.table(&half(other))) else { return 1.0 };
@@ -135,7 +137,7 @@ fn part_unguided(lessons: &[&Lesson], tabulator: Tabulator<'_>) -> f32 {
 }
 
 impl Tabulator<'_> {
-    /// Of `lessons` of one cell; none where no links lead there.
+    /// The table of `lessons` of one cell; none where no links lead there.
     fn table(self, lessons: &[&Lesson]) -> Option<Table> {
         if self.basis == Basis::Links {
             let lesson = lessons.get(lessons.len() / 2)?;

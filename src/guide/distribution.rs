@@ -1,5 +1,5 @@
-//! Light over directions (P03T sec. A.1): it is constant on both sides of a surface, or on bins of equal solid angle. Distributions
-//! add, they are evaluated and sampled; what reflects or scatters is a matrix that takes one to another.
+//! Light over directions (P03T sec. A.1), constant on each side of a surface or on bins of equal solid angle.
+//! Distributions are added, evaluated and sampled; reflection and scattering are matrices between them.
 
 use crate::{
     math::{Frame, Spectrum, SpectrumExt, Vec2, Vec3, vec2, warp},
@@ -7,7 +7,7 @@ use crate::{
 };
 use std::f32::consts::PI;
 
-/// The directions that have one value.
+/// How directions are divided into bins, each of one value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bins {
     /// Two: on the side of this unit normal, and on the other.
@@ -53,8 +53,8 @@ impl Bins {
         }
     }
 
-    /// A unit direction in which even light leaves through the `bin`, for a uniform point of the unit square: by the cosine from a surface of
-    /// unit `normal` that the sides are of, else uniform.
+    /// A unit direction in which uniform light leaves through the `bin`, for a uniform point of the unit square. For
+    /// the sides of a surface of unit `normal` it is distributed by the cosine, else uniformly.
     pub fn leave(self, bin: usize, normal: Vec3, u: Vec2) -> Vec3 {
         match self {
             Self::Sides(_) => {
@@ -73,8 +73,8 @@ impl Bins {
         }
     }
 
-    /// What light of perpendicular irradiance 1 from unit `direction` counts in its bin: the cosine at a surface that looks the same
-    /// from everywhere on a side; else 1, and scattering has the cosine.
+    /// Weight in its bin of light of perpendicular irradiance 1 from unit `direction`: the cosine at a surface with one
+    /// value per side; else 1, and scattering contains the cosine.
     #[inline]
     pub fn cosine(self, direction: Vec3) -> f32 {
         match self {
@@ -116,7 +116,7 @@ impl Distribution {
         self
     }
 
-    /// The same over `other`, over the same bins; 1 where that is nothing.
+    /// The same divided by `other`, over the same bins; 1 where `other` is 0.
     pub fn over(mut self, other: &Self) -> Self {
         self.values.iter_mut().zip(&other.values).for_each(|(value, other)| *value = over(*value, *other));
         self
@@ -151,7 +151,7 @@ impl Distribution {
         });
     }
 
-    /// What leaves where this arrives: `scattering` has a row of all bins of light that comes for each bin of light that leaves.
+    /// The light that leaves where this arrives. `scattering` has a row of all incoming bins for each outgoing bin.
     pub fn scattered(&self, scattering: &[Spectrum], tint: Spectrum) -> Self {
         let rows = scattering.chunks_exact(self.values.len());
         let sum = |row: &[Spectrum]| -> Spectrum {
@@ -165,9 +165,9 @@ impl Distribution {
         self.values.iter().copied().sum()
     }
 
-    /// A unit direction in which light leaves a surface of unit `normal`, which the sides are of, or a medium: by the cosine on each side,
-    /// else evenly within a bin. What leaves in all directions, over what leaves in this one at the same density (sr), comes with it;
-    /// none where it is dark.
+    /// Samples a unit direction in which light leaves a surface of unit `normal`, by the cosine on each side, or a
+    /// medium, uniformly within a bin. The second value is the light of all directions over that of this one at the
+    /// same density (sr). None where it is dark.
     pub fn sample(&self, normal: Vec3, stream: &mut Stream) -> Option<(Vec3, f32)> {
         let chances = Discrete::new(self.values.iter().map(|value| f64::from(value.luminance())));
         if chances.is_empty() {
@@ -179,13 +179,13 @@ impl Distribution {
     }
 }
 
-/// `a` over `b`; 1 where that is nothing.
+/// `a` over `b`; 1 where `b` is 0.
 pub fn over(a: Spectrum, b: Spectrum) -> Spectrum {
     Spectrum::select(b.cmpgt(Spectrum::ZERO), a / b, Spectrum::ONE)
 }
 
-/// Visits all pairs of a bin of a cluster and one of its part that share light, with what a value of the part counts in the cluster. The power of
-/// each bin of the part stays the same.
+/// Visits all pairs of a bin of a cluster and a bin of its part that share light, with the weight of the part's value
+/// in the cluster. The power of each bin of the part is conserved.
 fn join(cluster: Bins, part: Bins, mut visit: impl FnMut(usize, usize, f32)) {
     if let (Bins::Sides(own), Bins::Sides(other)) = (cluster, part) {
         let turned = usize::from(own.dot(other) < 0.0);

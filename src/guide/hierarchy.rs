@@ -34,7 +34,7 @@ pub struct Node {
     pub points: Range<u32>,
     /// The box around those.
     pub bounds: Bounds,
-    /// That of its points.
+    /// The measure of its points.
     pub measure: Spectrum,
 }
 
@@ -44,14 +44,15 @@ pub struct Hierarchy {
     places: Places,
     surfaces: Cells<6, u32>,
     media: Cells<3, u32>,
-    /// Those of surfaces come first.
+    /// Nodes of surfaces come first.
     pub nodes: Vec<Node>,
     /// The node of each element.
     pub elements: Vec<u32>,
 }
 
 impl Hierarchy {
-    /// Of `samples`, with half of `per_element` of them in each element at least; and the order in which they stand for nodes.
+    /// The hierarchy of `samples`, with at least half of `per_element` of them in each element; and their order by
+    /// nodes.
     pub fn of(samples: &[Sample], per_element: f64) -> (Self, Vec<u32>) {
         let places = Places::around(samples.iter().map(|sample| sample.position));
         let (mut order, mut elements) = (Vec::new(), Vec::new());
@@ -77,7 +78,7 @@ impl Hierarchy {
         (Self { places, surfaces, media, elements: vec![0; elements.len()], nodes }.joined(), order)
     }
 
-    /// The same whose nodes know what they are parts of.
+    /// The same with the parents of nodes set.
     fn joined(mut self) -> Self {
         for index in 0..self.nodes.len() {
             match self.nodes[index].parts {
@@ -124,7 +125,7 @@ impl Hierarchy {
 /// Levels below all surfaces, and below all media.
 const LEVELS: u32 = 20;
 
-/// Adds an element of points to `order`, which ends in it where `elements` says; its index.
+/// Appends an element: its points to `order`, and their range there to `elements`; its index.
 fn add<const D: usize>(order: &mut Vec<u32>, elements: &mut Vec<Range<u32>>, own: Vec<Valued<D>>) -> u32 {
     let first = order.len() as u32;
     order.extend(own.iter().map(|one| one.index));
@@ -132,7 +133,7 @@ fn add<const D: usize>(order: &mut Vec<u32>, elements: &mut Vec<Range<u32>>, own
     elements.len() as u32 - 1
 }
 
-/// Those of all `cells`, of which the first is node `first`.
+/// The nodes of all `cells`; the first is node `first`.
 fn nodes<'a, const D: usize>(
     cells: &Cells<D, u32>,
     first: u32,

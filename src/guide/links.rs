@@ -1,5 +1,5 @@
-//! Densities over links (P03T sec. 5.2.3): a walk chooses one of the links that bring light to where it is, then a point of the sender, and
-//! goes there.
+//! Guiding by links (P03T sec. 5.2.3): a walk chooses one of the links that bring light to its place, then a point of
+//! the sender, and goes there.
 
 use super::hierarchy::Hierarchy;
 use crate::{
@@ -17,12 +17,13 @@ pub struct Aim {
     pub frame: Frame,
     /// Half its edges (m), all above 0.
     pub half: Vec3,
-    /// How often it is chosen.
+    /// The probability to choose it.
     pub probability: f32,
 }
 
 impl Aim {
-    /// Density of unit `direction` from `position` (1/sr): points of the box lie evenly, hence those along the ray as the squared distance.
+    /// Density of unit `direction` from `position` (1/sr): points of the box are uniform, so those along the ray have a
+    /// density in proportion to the squared distance.
     #[inline]
     fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
         let origin = self.frame.to_local(position - self.centre);
@@ -50,7 +51,7 @@ impl Aim {
 pub struct Aims(Arc<[Aim]>);
 
 impl Aims {
-    /// Those that are chosen most often, no more than `most` of them: less often than the others there is little to find. None where there are none.
+    /// Keeps the most probable of `aims`, up to `most` of them: the others find little. Empty where there are none.
     pub fn of(mut aims: Vec<Aim>, most: usize) -> Self {
         aims.sort_by(|a, b| b.probability.total_cmp(&a.probability));
         aims.truncate(most);
@@ -86,7 +87,7 @@ impl Aims {
     }
 }
 
-/// Those of all elements.
+/// The links of all elements.
 #[derive(Debug)]
 pub struct Links {
     /// The elements.
@@ -96,7 +97,7 @@ pub struct Links {
 }
 
 impl Links {
-    /// Those at a place; none where nothing brings light there.
+    /// The links at a place; none where nothing brings light there.
     pub(super) fn at(&self, position: Vec3, normal: Option<Vec3>) -> Option<&Aims> {
         let element = self.hierarchy.element(position, normal)?;
         Some(&self.aims[element as usize]).filter(|aims| !aims.is_empty())

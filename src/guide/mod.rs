@@ -1,16 +1,16 @@
-//! The guide: from where light comes to a place, and from where it is seen, as was learnt from paths that reach the image.
-//! Walks follow it at some of their vertices, and only where it was found to lower the variance, so that no density is 0 that
-//! was not (after P03T sec. 5.2 and Mueller et al. 2017, Practical Path Guiding; both kinds of walks are guided, hence two
-//! distributions at every place).
+//! Path guiding: where light comes from at a place, and where it is seen from, learnt from paths that reach the image
+//! (after P03T sec. 5.2 and Mueller et al. 2017, Practical Path Guiding). Both kinds of walks are guided, hence two
+//! distributions at every place. Walks follow the guide at some of their vertices, and only where it was found to lower
+//! the variance: no density becomes 0 that was not.
 //!
 //! With p the density of the BSDF or the phase function, a walk leaves a vertex in direction w with the density
 //! ```text
 //! a p(w) + (1 - a) G(w)
 //! ```
-//! (a is the BSDF sampling fraction of Mueller et al.), and the walk from the other end leaves the same vertex towards the one
-//! before, w', with a p'(w') + (1 - a) G'(w'). G' does not depend on w: it is looked up once, on arrival, and kept. A part of G
-//! aims at portals, each of them a few spheres around one centre, a little of it even where no walk was seen to go through them; the
-//! rest is a table of the directions from a cell of places.
+//! (a is the BSDF sampling fraction of Mueller et al.). The walk from the other end leaves the same vertex towards the
+//! one before, in direction w', with the density a p'(w') + (1 - a) G'(w'). G' does not depend on w: it is looked up
+//! once, on arrival, and kept. A part of G aims at portals, each of them a few spheres around one centre; a little does
+//! so even where no walk was seen to pass through. The rest is a table of directions from a cell of places.
 
 mod crossings;
 mod directions;
@@ -63,11 +63,12 @@ impl Learnt {
     }
 }
 
-/// Half of the directions, as [`quadtree::effective`](crate::sampling::quadtree::effective) counts them, from which on a cell is divided.
+/// Half the number of directions, as [`quadtree::effective`](crate::sampling::quadtree::effective) counts them, at
+/// which a cell is divided.
 const PER_CELL: f64 = 256.0;
 /// Levels of cells below the root: there are 4,096 of surfaces, and as many of media.
 const LEVELS: u32 = 12;
-/// Of the weight of all directions, the most that one may have: it may be an outlier.
+/// Largest part of the weight of all directions that one may have: it may be an outlier.
 const MOST: f64 = 1.0 / 1024.0;
 
 /// A direction in which a walk should leave a vertex.
@@ -89,21 +90,21 @@ pub struct Lesson {
     pub fold: usize,
 }
 
-/// What walks follow.
+/// The distributions that walks follow.
 #[derive(Clone, Debug, Default)]
 pub struct Guide {
     places: Places,
     portals: Vec<Portal>,
     surfaces: Cells<6, u32>,
     media: Cells<3, u32>,
-    /// Those of surfaces come first.
+    /// Cells of surfaces come first.
     cells: Vec<Cell>,
     of_surfaces: usize,
-    /// What the guide before it left of the second moment of what walks bring; 1 if there was none.
+    /// The part of the second moment that the guide before it left; 1 if there was none.
     pub second_moment: f64,
 }
 
-/// Directions of the camera's walks and of light's.
+/// Directions of camera subpaths and of light subpaths.
 #[derive(Clone, Debug)]
 struct Cell([Option<Directions>; 2]);
 
@@ -123,7 +124,7 @@ impl Guidance {
     pub const NONE: Self = Self { cell: NOWHERE, reverse: 0.0 };
 }
 
-/// A lesson, by its index, and by what its cell is looked up.
+/// The index of a lesson, and the key of its cell.
 struct Known<const D: usize> {
     key: [f32; D],
     weight: f32,
@@ -140,8 +141,8 @@ impl<const D: usize> Keyed<D> for Known<D> {
 }
 
 impl Guide {
-    /// What `lessons` tell, in some `basis`; none where that is nothing, or nothing better than what BSDFs and phase functions do. With
-    /// [`Basis::Links`] there are `links`.
+    /// Learns a guide from `lessons`, in a `basis`; none where it would be no better than BSDFs and phase functions.
+    /// With [`Basis::Links`] there are `links`.
     pub fn learn(mut lessons: Vec<Lesson>, basis: Basis, links: Option<&Links>) -> Option<Self> {
         if limit(&mut lessons, MOST, |lesson| &mut lesson.weight) < ENOUGH {
             return None;
@@ -171,19 +172,19 @@ impl Guide {
         guide.cells.iter().any(Cell::guides).then_some(guide)
     }
 
-    /// The guide before it, which walks followed to learn this one, left so much of the second moment of what they bring.
+    /// Notes the part of the `second_moment` that the guide before left, which walks followed to learn this one.
     pub fn judged(self, second_moment: f64) -> Self {
         Self { second_moment, ..self }
     }
 
-    /// Without what is known of walks against `transport`, which do not run.
+    /// Without the directions of the walks opposite to `transport`, which do not run.
     pub fn only(mut self, transport: Transport) -> Self {
         self.cells.iter_mut().for_each(|cell| cell.0[index(transport.reversed())] = None);
         self
     }
 
-    /// What the walk by `transport` knows where it arrives from unit `incoming`; `normal` is that of a surface, of the point
-    /// alone: walks from both ends, perhaps on both sides, find the same cell.
+    /// The guidance of a walk by `transport` that arrives from unit `incoming`. The `normal` of a surface depends on
+    /// the point alone: walks from both ends, perhaps on both sides, find the same cell.
     #[inline]
     pub fn guidance(
         &self,
@@ -198,7 +199,7 @@ impl Guide {
         Guidance { cell, reverse }
     }
 
-    /// The cell of a place, with a normal as for [`Self::guidance`]; one of none where nothing is known of any.
+    /// The cell of a place, with a normal as for [`Self::guidance`]; an invalid one where nothing is known.
     #[inline]
     pub fn cell(&self, position: Vec3, normal: Option<Vec3>) -> u32 {
         let cell = match normal {
@@ -229,13 +230,13 @@ impl Guide {
         Some(known.pdf(position, direction) / (1.0 - known.unguided))
     }
 
-    /// What much of the light goes through, the most telling first.
+    /// The portals, the most telling first.
     pub fn portals(&self) -> &[Portal] {
         &self.portals
     }
 
-    /// How often walks by `transport` leave `position`, which lies in `cell`, in unit `direction`, over how often they do without
-    /// the guide: with the density `unguided` (1/sr), 0 for mirrors.
+    /// Density with which walks by `transport` leave `position`, which lies in `cell`, in unit `direction`, over their
+    /// density `unguided` without the guide (1/sr, 0 for mirrors).
     pub fn ratio(
         &self,
         cell: u32,
@@ -285,7 +286,7 @@ impl Guide {
         [part(transport) * unguided[0], part(transport.reversed()) * unguided[1]]
     }
 
-    /// A direction by the guide; none where this vertex is left without it.
+    /// A direction by the guide; none where this one is left to the BSDF or the phase function.
     #[inline]
     pub fn sample(
         &self,

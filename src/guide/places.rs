@@ -1,9 +1,9 @@
-//! Places, as cells are looked up by them: whatever the units and the extent of the scene.
+//! Places as keys of cells, independent of the units and the extent of the scene.
 
 use crate::{math::Vec3, sampling::cells::Keyed};
 
-/// How far apart opposite directions are taken to be, over the extent of the scene: cells hold surfaces that face one way before
-/// they hold such that lie close together.
+/// Distance that opposite directions count for, over the extent of the scene: cells are divided by orientation before
+/// they get small.
 const OPPOSITE: f32 = 0.5;
 
 /// What places are measured against.
@@ -37,7 +37,7 @@ impl Places {
     }
 }
 
-/// One of many, by its index: what its cell is looked up by, and the value at whose changes cells end.
+/// An item, by its index: the key of its cell, and the value at whose changes cells end.
 pub(super) struct Valued<const D: usize> {
     pub key: [f32; D],
     pub value: f32,

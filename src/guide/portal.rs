@@ -1,5 +1,5 @@
-//! Portals: what light has to go through to reach the image, like the openings between rooms, or a ball of glass. A table of
-//! directions would have to learn of it in every cell of places anew; a portal is known from everywhere.
+//! Portals: what light must pass through to reach the image, like the openings between rooms, or a ball of glass. A
+//! table of directions would have to learn them anew in every cell of places; a portal is known from everywhere.
 
 use super::Lesson;
 use crate::{
@@ -7,14 +7,15 @@ use crate::{
     sampling::Stream,
 };
 
-/// Spheres that directions aim at around one centre, each wider by the square root of 2. An opening may be of any shape: one sphere
-/// of about its size leaves out its corners, and the few paths that find those would weigh as much as without a guide.
+/// Number of concentric spheres that directions aim at, each wider by the square root of 2. An opening may be of any
+/// shape: one sphere of about its size leaves out its corners, and the few paths that find those would weigh as much as
+/// without a guide.
 const SPHERES: usize = 4;
-/// The part of the directions that aims at each of them, at least.
+/// Least part of the directions that aims at each of them.
 const LEAST: f32 = 0.05;
 /// How often shares are fitted.
 const FITS: usize = 16;
-/// Where sine squared is more, at the surface and within, a sphere is around on all sides.
+/// Above this squared sine, at the surface and within, a sphere counts as all around.
 const WITHIN: f32 = 0.999;
 
 /// Concentric spheres that walks aim at.
@@ -27,8 +28,8 @@ pub struct Portal {
 }
 
 impl Portal {
-    /// That of spheres from `smallest` on. As many directions aim at each as is most likely by those of the `lessons`, each with
-    /// how much it counts (above 0), that come from outside and go through.
+    /// The portal of spheres from `smallest` on. Their shares maximise the likelihood of the `lessons` that come from
+    /// outside and pass through, each with its weight (above 0).
     pub fn fitted<'a>(smallest: Sphere, lessons: impl Iterator<Item = (f32, &'a Lesson)>) -> Self {
         let even = Self { smallest, shares: [1.0 / SPHERES as f32; SPHERES] };
         let outermost = even.outermost();
@@ -40,7 +41,7 @@ impl Portal {
         Self { smallest, shares: fitted.shares.map(|share| LEAST + rest * share) }
     }
 
-    /// One step of expectation and maximisation.
+    /// One step of expectation maximisation.
     fn refitted(&self, known: &[(f32, [f32; SPHERES])]) -> Self {
         let mut sums = [f32::MIN_POSITIVE; SPHERES];
         for (weight, pdfs) in known {
@@ -119,7 +120,7 @@ impl Sphere {
         (along > 0.0).then(|| (to - along * direction).length_squared())
     }
 
-    /// True if directions from `position` that aim at it may be the unit `direction`.
+    /// True if unit `direction` from `position` may be one that aims at it.
     #[inline]
     fn is_aimed(&self, position: Vec3, direction: Vec3) -> bool {
         let is_outside = self.radius_squared < WITHIN * position.distance_squared(self.centre);

@@ -1,6 +1,6 @@
-//! Radiance learnt beforehand: what places scatter towards those who look at them, in place of walks that would go on from there
-//! (after P03T sec. 5.3). It is the mean over cells: of surfaces that face one way, and of media as they are seen from one way, so
-//! far as they scatter forwards or backwards.
+//! Radiance learnt beforehand, which replaces walks that would go on from a place (after P03T sec. 5.3). It is the mean
+//! over cells: of surfaces that face one way, and of media seen from one way, as far as these scatter forwards or
+//! backwards.
 
 use super::places::{Places, Valued};
 use crate::{
@@ -9,18 +9,19 @@ use crate::{
 };
 use rayon::prelude::*;
 
-/// Half of the looks from which on a cell is divided: its noise is blurred again by those who look at many.
+/// Half the number of looks at which a cell is divided: its noise averages out over the many cells that a pixel looks
+/// at.
 const PER_CELL: f64 = 64.0;
 /// Levels of cells below the root: there are 32,768 of surfaces, and as many of media.
 const LEVELS: u32 = 15;
-/// Change of all radiance by one more bounce, below which no more is to come.
+/// Radiance has settled when one more bounce changes at most this part of all of it.
 const SETTLED: f64 = 1e-6;
 
 /// What is seen of a place, on average.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
     position: Vec3,
-    /// On a surface the unit normal on the side that is seen; in a medium the direction it is seen from, as long as the
+    /// On a surface the unit normal on the side that is seen; in a medium the direction that it is seen from, times the
     /// mean cosine of scattering.
     facing: Vec3,
     is_surface: bool,
@@ -43,7 +44,7 @@ impl Seen {
         Self { position, facing, is_surface: false, radiance: Spectrum::ZERO }
     }
 
-    /// What its cell is found by.
+    /// The key of its cell.
     #[inline]
     fn key(&self, places: &Places) -> [f32; 6] {
         places.facing(self.position, self.facing)
@@ -55,7 +56,7 @@ impl Seen {
 pub struct Look {
     /// The place, and what it scatters by itself (W/(m^2 sr)).
     pub seen: Seen,
-    /// A later look that the walk came to next, and the part of its radiance that this place scatters as well.
+    /// The later look that the walk came to next, and the part of its radiance that this place scatters on.
     pub onward: Option<(u32, Spectrum)>,
     /// Of each channel, 0 if the walk sampled distances by another, else the part of this place's radiance that the place before
     /// scatters: walks that follow a guide come here the more often, the less they bring.
@@ -83,17 +84,17 @@ pub struct Radiance {
 }
 
 impl Radiance {
-    /// As `looks` say of light that is scattered so many times on its way from one place to another, at most.
+    /// Learns from `looks` the radiance of light of at most `most_bounces` bounces from one place to another.
     ///
-    /// Where cells should end is seen from how bright places are: first as each walk alone found them, then as the first cells are
-    /// lit by each other.
+    /// Cells end where the brightness of places changes: first the brightness that each walk alone found, then the one
+    /// that follows from the first cells.
     pub fn learn(looks: &[Look], most_bounces: u32) -> Self {
         let first = Self::between(looks, &walked(looks), most_bounces);
         let lit = |look: &Look| look.lit_by(|next| first.at(&looks[next].seen));
         Self::between(looks, &looks.par_iter().map(lit).collect::<Vec<_>>(), most_bounces)
     }
 
-    /// In cells that end where the radiance of places differs that is `shown`.
+    /// In cells that end where the `shown` radiance of places differs.
     fn between(looks: &[Look], shown: &[Spectrum], most_bounces: u32) -> Self {
         let places = Places::around(looks.iter().map(|look| look.seen.position));
         let mut leaves: Vec<Vec<u32>> = Vec::new();
@@ -158,7 +159,7 @@ impl Balance {
     /// Of the looks of a cell, as their means, where `cells` has those of all looks.
     fn of(looks: &[Look], leaf: &[u32], cells: &[Option<u32>]) -> Self {
         let own = || leaf.iter().map(|index| &looks[*index as usize]);
-        // Each channel by walks that sampled by it: by others, it is as noisy as their densities differ.
+        // Each channel uses the walks that sampled by it: in others it is noisy, as their densities differ.
         let all = own().map(|look| look.weights).sum::<Spectrum>();
         let each = Spectrum::select(all.cmpgt(Spectrum::ZERO), all.recip(), Spectrum::ZERO);
         let source = own().map(|look| look.weights * look.seen.radiance).sum::<Spectrum>() * each;

@@ -19,7 +19,7 @@ pub struct Place {
     pub normal: Option<Vec3>,
     /// Unit direction towards where it is seen from.
     pub towards: Vec3,
-    /// That of the medium's phase function; 0 on a surface.
+    /// Mean cosine of the medium's phase function; 0 on a surface.
     pub mean_cosine: f32,
 }
 
@@ -99,7 +99,8 @@ impl Solution {
         element.map_or(Spectrum::ZERO, |element| self.values[element as usize].at(place.towards))
     }
 
-    /// The same, interpolated between elements: the mean over places within about an element's size, one of which `stream` chooses.
+    /// The same, interpolated between elements: `stream` chooses a place within about an element's size, so that the
+    /// mean is smooth.
     #[inline]
     fn about(&self, place: &Place, stream: &mut Stream) -> Spectrum {
         let Some(element) = self.hierarchy.element(place.position, place.normal) else {

@@ -18,9 +18,9 @@ pub(super) struct Follower<'a> {
     /// Channel of the walk at hand.
     pub hero: usize,
     walks: u32,
-    /// That of the light subpath at hand.
+    /// The start of the light subpath at hand.
     current: Option<Followed>,
-    /// Those of the vertices in the cache, per hero channel in the cache's order.
+    /// The starts of the vertices in the cache, per hero channel in the cache's order.
     kept: Vec<Vec<Followed>>,
 }
 
@@ -28,9 +28,9 @@ pub(super) struct Follower<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Followed {
     pub start: Start,
-    /// How often light subpaths start there without what was learnt, over how often they do.
+    /// Density of light subpaths' starts there without learnt starts, over that with them.
     pub unlearnt: f32,
-    /// The number of the light subpath that did.
+    /// The number of the light subpath that started there.
     pub walk: Option<u32>,
 }
 
@@ -80,7 +80,7 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// How often light subpaths start like the one at hand without what was learnt, over how often they do.
+    /// Density of the current light subpath's start without learnt starts, over that with them.
     pub(super) fn unlearnt(&self) -> f32 {
         self.current.map_or(1.0, |followed| followed.unlearnt)
     }

@@ -1,4 +1,4 @@
-//! Where walks went: the vertices of the paths that they make, so that it can be learnt which way walks should go.
+//! The vertices of walks and of the paths that they make, from which a guide learns directions.
 
 use crate::{
     bsdf::Transport,
@@ -13,7 +13,7 @@ use crate::{
     },
 };
 
-/// The camera's, which go towards the light, and the light's.
+/// Camera subpaths, which go towards the light, and light subpaths.
 const WALKS: [Transport; 2] = [Transport::Radiance, Transport::Importance];
 
 /// A vertex of a walk.
@@ -28,14 +28,14 @@ struct Site {
     incoming: Vec3,
     /// The vertex before, none if that is where the walk set out.
     before: Option<u32>,
-    /// See [`Event::is_connectible`]; walks go on from others as they must.
+    /// See [`Event::is_connectible`]; from other vertices walks go on as they must.
     connectible: bool,
-    /// Where the walk went on.
+    /// Densities of the direction in which the walk went on.
     onward: Onward,
 }
 
 impl Site {
-    /// Those to the light and to the camera, of a path that goes on in unit direction `outgoing` from where its walk came.
+    /// The directions to the light and to the camera, of a path that leaves this vertex in unit direction `outgoing`.
     fn directions(&self, outgoing: Vec3) -> [Vec3; 2] {
         match self.transport {
             Transport::Radiance => [outgoing, self.incoming],
@@ -44,11 +44,11 @@ impl Site {
     }
 }
 
-/// Densities without a guide: of the camera's walk towards the light, and of the light's towards the camera (1/sr); 0 where they
-/// are not known.
+/// Densities without a guide: of a camera subpath towards the light, and of a light subpath towards the camera (1/sr);
+/// 0 where unknown.
 type Onward = [f32; 2];
 
-/// Those between `incoming` and `outgoing` where a walk by `transport` came.
+/// The densities where a walk by `transport` came from `incoming` and its path leaves to `outgoing`.
 fn onward(
     scene: &Scene,
     interaction: &Interaction,
@@ -71,7 +71,7 @@ pub(super) struct Tracks {
     /// The last vertex of the walk at hand.
     last: Option<u32>,
     at: Option<(Interaction, Vec3)>,
-    /// Those of the vertices in the cache, per hero channel in the cache's order.
+    /// The vertices in the cache, per hero channel in the cache's order.
     kept: Vec<Vec<u32>>,
 }
 
@@ -82,7 +82,7 @@ pub(super) struct Track {
     light: Option<u32>,
     /// Of both ends.
     onward: [Onward; 2],
-    /// Unit direction from the camera's last vertex to what it was connected with.
+    /// Unit direction from the last camera vertex to the other end of the connection.
     towards_light: Vec3,
 }
 
@@ -156,8 +156,8 @@ impl Tracks {
         Some(Track { camera, light, onward: [near, far], towards_light })
     }
 
-    /// What a path tells that counts for `weight`, shared between `strategies` as `shares` say, as one of the lessons of `fold`:
-    /// `take` sees how much each lesson counts, and the lesson if it asks.
+    /// The lessons, in `fold`, of a path that counts for `weight` and has these `shares` of strategies. `take` gets the
+    /// weight of each lesson, and the lesson itself on request.
     pub(super) fn lessons(
         &self,
         track: &Track,
@@ -184,8 +184,8 @@ impl Tracks {
         }
     }
 
-    /// For each vertex that a walk went on from, how often `strategies` would go that way without `guide`, over how often they do
-    /// with it.
+    /// For each vertex that a walk left: the density of its direction, by `strategies`, without `guide` over that with
+    /// it.
     pub(super) fn known<'a>(&self, guide: &'a Guide, strategies: Strategies) -> Known<'a> {
         let by_camera = strategies.emitter_hit || strategies.next_event || strategies.connection;
         let walks = [by_camera, strategies.connection || strategies.lens];
@@ -198,8 +198,8 @@ impl Tracks {
         known
     }
 
-    /// How often strategies make a path without a guide, over how often they do with the one that is `known`, as `shares` of them
-    /// say.
+    /// The density of a path by all strategies without a guide over that with the `known` one, for these `shares` of
+    /// strategies.
     pub(super) fn unguided(&self, track: &Track, shares: &Shares, known: &Known<'_>) -> f64 {
         let ratios = |at: u32| {
             let index = at as usize;
@@ -222,7 +222,7 @@ impl Tracks {
         path
     }
 
-    /// Where a path goes on from a vertex of it, `at`: the densities, and the unit directions to the light and to the camera.
+    /// At vertex `at` of a path: the densities, and the unit directions to the light and to the camera.
     fn way(&self, track: &Track, at: u32) -> Way {
         let [near, far] = track.onward;
         let site = &self.sites[at as usize];
@@ -242,7 +242,7 @@ impl Tracks {
 
 type Way = (Onward, [Vec3; 2]);
 
-/// Vertices of a path that need no more memory.
+/// Vertices of a path for which memory is reserved.
 const USUAL: usize = 16;
 
 impl Track {
@@ -252,17 +252,17 @@ impl Track {
     }
 }
 
-/// How often walks go on without a guide, over how often they do with it.
+/// Densities with which walks go on without a guide, over those with it.
 pub(super) struct Known<'a> {
     guide: &'a Guide,
-    /// Whether those of the camera and of light matter.
+    /// Whether camera subpaths matter, and whether light subpaths do.
     walks: [bool; 2],
-    /// Of each vertex; 1 where none goes on.
+    /// For each vertex; 1 where no walk goes on.
     ratios: Vec<[f64; 2]>,
 }
 
 impl Known<'_> {
-    /// Those of both walks.
+    /// The ratios of both walks.
     fn at(&self, site: &Site, (onward, directions): Way) -> [f64; 2] {
         if !site.connectible {
             return [1.0; 2];
@@ -276,19 +276,19 @@ impl Known<'_> {
     }
 }
 
-/// What kinds of strategies make of a path, together 1.
+/// The shares of kinds of strategies in a path; they sum to 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shares {
     hit: f32,
     next_event: f32,
     connection: f32,
     lens: f32,
-    /// What they make of it, over what all strategies do.
+    /// Their sum as a share of all strategies.
     pub of_all: f32,
 }
 
 impl Shares {
-    /// Those of `strategies` among `shares` in the weights; none where they make nothing of it.
+    /// The shares of `strategies` among all `shares` in the weights; none where these are 0.
     pub(super) fn of(shares: &[f32; StrategyKind::ALL.len()], strategies: Strategies) -> Option<Self> {
         let of = |kind| if strategies.has(kind) { shares[kind as usize] } else { 0.0 };
         let [hit, next_event, connection, lens, _] = StrategyKind::each(of);
@@ -298,8 +298,8 @@ impl Shares {
         (sum > 0.0).then_some(Self { hit, next_event, connection, lens, of_all: sum })
     }
 
-    /// By how much the strategies together make a path more often if walks leave each of its vertices, from the emitter to the
-    /// lens, so much more often: those of the camera towards the light, and those of the light.
+    /// The factor on the density of a path by all strategies, given factors at each of its vertices, from the emitter
+    /// to the lens: of camera subpaths towards the light, and of light subpaths towards the camera.
     fn made(&self, ratios: &[[f64; 2]]) -> f64 {
         let count = ratios.len();
         let mut by_camera = vec![1.0; count + 1];
@@ -317,8 +317,8 @@ impl Shares {
             + f64::from(self.lens) * by_light
     }
 
-    /// Of the strategies by which a camera subpath goes on from vertex `index` to the one before it, if there are so many
-    /// between emitter and lens. Connections are taken to be alike.
+    /// Share of the strategies whose camera subpath goes on from vertex `index` to the one before it, with so many
+    /// `vertices` between emitter and lens. All connections are taken to have equal shares.
     fn camera(&self, index: usize, vertices: usize) -> f32 {
         match index {
             0 => self.hit,
@@ -326,7 +326,7 @@ impl Shares {
         }
     }
 
-    /// The same of light subpaths that go on to the next vertex.
+    /// The same for light subpaths that go on to the next vertex.
     fn light(&self, index: usize, vertices: usize) -> f32 {
         match vertices - 1 - index {
             0 => 0.0,

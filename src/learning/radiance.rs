@@ -1,8 +1,8 @@
 //! Radiance, learnt for the preview `gather`: path tracing finds what lights places directly, and which places light each other.
 //!
-//! What a vertex scatters to the one before is what next-event estimation brings there, and emitters that the walk hits next;
-//! and, of what the next vertex scatters, the part that the walk carries on. Mirrors and glass, and glossy surfaces, are no places:
-//! what is seen in them belongs to the vertex before.
+//! The radiance that a vertex scatters to the one before has three parts: next-event estimation there, emitters that
+//! the walk hits next, and the part of the next vertex's radiance that the walk carries on. Mirrors, glass and glossy
+//! surfaces are no places: what is seen in them belongs to the vertex before.
 
 use crate::{
     film::Film,
@@ -25,22 +25,23 @@ use crate::{
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Camera subpaths between two decisions whether it is enough.
+/// Camera subpaths between two checks of the limits.
 const STEP: usize = 16_384;
-/// Looks that are enough.
+/// Limit of looks.
 const LOOKS: usize = 1 << 20;
-/// Segments that are.
+/// Limit of segments.
 const SEGMENTS: f64 = 3e6;
-/// Camera subpaths that are: many may see nothing.
+/// Limit of camera subpaths: many may see nothing.
 const SUBPATHS: usize = 1 << 20;
-/// Segments of a path that light takes, at most, where images have no limit: later ones bring little.
+/// Most bounces of light where images have no limit: later ones bring little.
 const DEEPEST: u32 = 1024;
-/// Segments of a walk.
+/// Most segments of a walk.
 const LONGEST: u32 = 32;
-/// Segments to the last vertex of which a walk is sure to say what it scatters: beyond, not all of them go on to another place.
+/// Segments to the last vertex whose radiance is complete: beyond, not all walks go on to another place.
 const WHOLE: u32 = 24;
 
-/// What is seen of `scene` after so many bounces from one place to another (no more than `DEEPEST`), by walks that follow what was `learnt`.
+/// The radiance of `scene` by light of at most so many bounces from one place to another (no more than `DEEPEST`),
+/// found by walks that follow what was `learnt`.
 pub(super) fn learn(
     scene: &Scene,
     film: &Film,
@@ -135,7 +136,7 @@ impl CameraPaths<'_> {
         }
     }
 
-    /// Light comes to the last of so many `vertices` of the walk, and from there to the place that it is seen from.
+    /// Adds light that arrives at the last of so many `vertices` of the walk to the last place among these.
     fn light(&mut self, vertices: usize, value: Spectrum) {
         if let Some(place) = self.walk[..vertices].iter_mut().rev().find(|reached| reached.is_dull) {
             place.seen.radiance += ratio(value, place.throughput);

@@ -1,13 +1,14 @@
-//! Training of the starts of light subpaths, and of the guide: a few samples by all strategies, round after round, each of
-//! which begins its light subpaths, and follows walks, where those before it found that light reaches the image.
+//! Training of the starts of light subpaths and of the guide, in rounds of a few samples by all strategies. Each round
+//! starts its light subpaths, and guides its walks, where the rounds before found that light reaches the image.
 //!
-//! A path that any strategy found counts for as much of its pixel as strategies that begin at an emitter are to make of it:
-//! its contribution over the pixel's mean, times their share in the weights. In balance, starts are then as dense, together
-//! with all other strategies, as their light is in the image. Next-event estimation finds openings long before light subpaths
-//! do. Directions of walks count likewise, for what those strategies are to make that have to find them.
+//! A path that any strategy found teaches starts with the weight of its contribution over the pixel's mean, times the
+//! share of strategies that begin at an emitter. In equilibrium, the density of starts together with all other
+//! strategies is in proportion to their light in the image. Next-event estimation finds openings long before light
+//! subpaths do. Directions of walks are weighted likewise, by the share of the strategies that have to sample them.
 //!
-//! No sample of the image teaches, so that all are independent. Those of high numbers follow what more rounds learnt: an image of
-//! few samples learns little, one of many much, and each part of an image learns what the whole learns for the same samples.
+//! No sample of the image teaches, so all samples are independent. Samples of higher numbers follow more rounds: an
+//! image of few samples learns little, one of many much, and each part of an image learns what the whole learns for the
+//! same samples.
 
 use super::{radiance, trial::Trial};
 use crate::{
@@ -31,24 +32,23 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// Of its random numbers; the same for all images of a scene, so that all of them are made alike.
+/// Seed of its random numbers; the same for all images of a scene, so that all of them are made alike.
 const SEED: u64 = 0x7374_6172_7473;
-/// Camera subpaths of the first round; each of the others has twice as many as the one before.
+/// Camera subpaths of the first round; each further round has twice as many as the one before.
 const FIRST: usize = 2048;
 /// Rounds before an image is begun.
 pub const ROUNDS: usize = 4;
-/// Of a guide, as many more as it takes to learn something, and to follow what is new in it, and while that brings much; up to so
-/// many.
+/// Most rounds before an image for a guide: rounds go on while the guide has untested parts or improves fast.
 const FOLLOWED: usize = 6;
-/// What two rounds leave of the second moment, at most, where they bring much.
+/// A guide improves fast if two rounds leave at most this part of the second moment.
 const BRINGS: f64 = 0.9;
-/// Rounds in all, of which the last two teach a guide.
+/// Most rounds in all. A guide learns from the last two.
 const MOST_ROUNDS: usize = 8;
-/// Of these, as many as there are at most while it is made.
+/// Most rounds while an image is made.
 pub const LATER_ROUNDS: usize = MOST_ROUNDS - ROUNDS;
-/// Samples of an image for each camera subpath of the first rounds that are learnt while it is made, before what they learn is worth
-/// its time: a path that teaches takes 3 times as long as one of the image by camera and light subpaths, and some 10 times as long
-/// by camera subpaths alone.
+/// Samples of an image, for each camera subpath of the first rounds made meanwhile, before such rounds are worth their
+/// time. A path that teaches takes 3 times as long as one of an image by camera and light subpaths, and some 10 times
+/// as long as one by camera subpaths alone.
 const PER_SUBPATH: f64 = 8.0;
 const PER_CAMERA_SUBPATH: f64 = 24.0;
 /// Time of a path that teaches, over that of one of an image.
@@ -56,24 +56,24 @@ const TEACHING: f64 = 3.0;
 /// Segments after which no further round begins, without a guide and for one.
 const SEGMENTS: f64 = 1e6;
 const GUIDE_SEGMENTS: f64 = 4e6;
-/// From so many rounds on a guide is given up where it does not seem to pay; where nothing is learnt, after one more.
+/// A guide that does not seem to pay is given up after this many rounds; where nothing is learnt, after one more.
 const JUDGING_ROUNDS: usize = 3;
-/// What a guide that pays leaves of the second moment, at most, by camera subpaths alone: looking up takes a sixth of the time, and
-/// learning some.
+/// Most that a paying guide leaves of the second moment with camera subpaths alone: look-ups take a sixth of the time,
+/// and learning takes some.
 const PAYS: f64 = 0.75;
-/// The same by light subpaths too: connections look up at both ends, by which samples were seen to take 1.7 times as long.
+/// The same with light subpaths too: connections look up at both ends, and samples took 1.7 times as long.
 const PAYS_CONNECTED: f64 = 0.5;
 /// Longest path: later vertices tell little of where light starts.
 const DEEPEST: u32 = 32;
 
-/// What renders by `settings` learn before their first sample: where light subpaths start that reach the image, where walks go,
-/// and what camera subpaths end in, as far as they ask for it. Kept with the scene.
+/// What renders by `settings` learn before their first sample, if they ask for it: starts of light subpaths, a guide,
+/// and the radiance that camera subpaths end in. Kept with the scene.
 pub fn learn_for(scene: &Scene, film: &Film, settings: &Settings) -> Learnt {
     learn_rounds(scene, film, settings, ROUNDS)
 }
 
-/// The rounds whose guide the samples of `pass` follow, one of each pixel: the more samples there are before it, the more is
-/// learnt, as the root of their number, for each round brings less than the one before. It is the same whatever samples a render
+/// The rounds whose guide the samples of `pass` (one per pixel) follow. Learning grows with the root of the number of
+/// samples before it, for each round brings less than the one before. The result is the same whatever sample a render
 /// begins with.
 pub fn rounds_for(film: &Film, settings: &Settings, pass: usize) -> usize {
     let light = settings.options.strategies.need_light_walks();
@@ -83,8 +83,8 @@ pub fn rounds_for(film: &Film, settings: &Settings, pass: usize) -> usize {
     (ROUNDS + 1..=MOST_ROUNDS).take_while(is_due).last().unwrap_or(ROUNDS)
 }
 
-/// The rounds whose guide samples of a render to a relative `error` follow after its first look: one more for each fourfold number of
-/// samples, the same as within an image, counted from those for errors as great as the values.
+/// The rounds whose guide a render to a relative `error` follows after its first look. As within an image, each
+/// fourfold number of samples adds one round, counted from an error of 1.
 pub fn rounds_to(error: f64) -> usize {
     let halvings = (-error.log2()).ceil() as usize;
     (ROUNDS + halvings).min(MOST_ROUNDS)
@@ -146,12 +146,12 @@ pub fn follows_guide(scene: &Scene, film: &Film, settings: &Settings) -> bool {
     }
 }
 
-/// True if what is learnt first takes no more than this `share` of the time of an image of so many samples.
+/// True if the first rounds take at most this `share` of the time of an image of so many `samples`.
 pub fn is_worth(samples: f64, share: f64) -> bool {
     share * samples >= TEACHING * (FIRST << ROUNDS) as f64
 }
 
-/// True if it would pay that walks by `options` follow a guide, as the first rounds of learning it foresee.
+/// True if a guide would pay for walks by `options`, as its first rounds forecast.
 pub fn guide_pays(scene: &Scene, film: &Film, options: Options) -> bool {
     Training::recall(scene, film, Wanted::by(options, true)).pays()
 }
@@ -159,7 +159,7 @@ pub fn guide_pays(scene: &Scene, film: &Film, options: Options) -> bool {
 /// What is to be learnt.
 #[derive(Clone, Copy, Debug)]
 struct Wanted {
-    /// Starts of light subpaths, which compete with other strategies or do not.
+    /// Starts of light subpaths: whether they compete with other strategies.
     starts: Option<bool>,
     /// A guide, for these strategies.
     guide: Option<Strategies>,
@@ -168,13 +168,13 @@ struct Wanted {
 }
 
 impl Wanted {
-    /// For renders by `options`, which follow a guide or do not.
+    /// For renders by `options`, with a guide if `guided`.
     fn by(options: Options, guided: bool) -> Self {
         let Options { strategies, effort, .. } = options;
         Self {
-            // Camera subpaths that never hit an emitter share nothing with light subpaths. A guide of both is learnt with starts
-            // whether they are wanted or not, so that a pilot that tries both, and what it chooses, share it; one of camera
-            // subpaths alone is better learnt without.
+            // Camera subpaths that never hit an emitter share nothing with light subpaths. A guide of both kinds of
+            // walks is always learnt with starts, so that a pilot that tries starts shares it with its choice. A guide
+            // of camera subpaths alone is better learnt without.
             starts: (effort.learnt_starts || guided && strategies.need_light_walks())
                 .then_some(strategies.emitter_hit),
             // What a pilot leaves out later changes nothing.
@@ -241,13 +241,13 @@ struct Known {
 }
 
 impl<'a> Training<'a> {
-    /// As far as it is known with the scene.
+    /// The training that is kept with the scene, or none yet.
     fn recall(scene: &'a Scene, film: &'a Film, wanted: Wanted) -> Self {
         let known = scene.lights.learnt.known(&wanted.key(film)).unwrap_or_default();
         Self { scene, film, wanted, known }
     }
 
-    /// What there is to follow after so many rounds and those that follow what was new by then; none if it `is_over` before.
+    /// What is learnt by so many `rounds`, and by more until the guide is settled; none if it `is_over` before.
     fn go_on(&mut self, rounds: usize, is_over: &(dyn Fn() -> bool + Sync)) -> Option<Learnt> {
         let had = self.known.learnt.len();
         while self.after(rounds).is_none() && self.round(is_over) {}
@@ -273,7 +273,7 @@ impl<'a> Training<'a> {
         self.known.segments > most
     }
 
-    /// True if what is learnt after so many rounds need not be tried out by another.
+    /// True if what so many rounds learnt need not be tested by another.
     fn is_settled(&self, rounds: usize) -> bool {
         rounds >= FOLLOWED || !self.is_new(rounds) && !self.brings_much(rounds)
     }
@@ -289,8 +289,7 @@ impl<'a> Training<'a> {
         self.known.learnt.get(rounds.checked_sub(1)?)?.guide.as_deref()
     }
 
-    /// True if nothing is known of what the guide learnt last would bring: there is none yet, or it is the first, with portals or
-    /// at all.
+    /// True if the latest guide is untested: there is none yet, or it is the first, or the first with portals.
     fn is_new(&self, rounds: usize) -> bool {
         let has_portals = |guide: &Guide| !guide.portals().is_empty();
         let is_first = |guide| {
@@ -318,8 +317,9 @@ impl<'a> Training<'a> {
         true
     }
 
-    /// False where after so many rounds a guide does not seem to leave less of the second moment than one that pays, or in the end
-    /// was not seen to. What portals give is seen in the round after that in which they are found.
+    /// False if the guide after so many rounds leaves too much of the second moment to pay: untested or early guides
+    /// are given the benefit of the doubt, but not the last one. The gain of portals shows one round after they are
+    /// found.
     fn may_pay(&self, rounds: usize, is_last: bool) -> bool {
         let Some(guide) = self.guide(rounds) else { return rounds <= JUDGING_ROUNDS };
         let connects = self.wanted.guide.is_some_and(|strategies| strategies.need_light_walks());
@@ -354,7 +354,7 @@ impl<'a> Training<'a> {
             let guide = guide.map(|guide| Arc::new(guide.judged(second_moment)));
             known.lessons = Arc::new(lessons);
             known.latest.guide.clone_from(&guide);
-            // Light's walks found paths for those of the camera, which go on alone.
+            // Light subpaths found paths for camera subpaths, which go on alone.
             learnt.guide = match strategies.need_light_walks() {
                 true => guide,
                 false => guide.map(|guide| Arc::new(Guide::clone(&guide).only(Transport::Radiance))),

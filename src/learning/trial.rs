@@ -26,13 +26,13 @@ use crate::{
 use rayon::prelude::*;
 use std::{collections::HashMap, ops::Range};
 
-/// Tiles with the greatest second moments that are left out of it, as few samples decide there.
+/// Part of the tiles, those of the greatest second moments, that is left out: few samples decide there.
 const OUTLIERS: f64 = 0.04;
-/// The image is divided into so many tiles across and down, at most, whose pixels count as one.
+/// Most tiles of the image across and down; the pixels of a tile count as one.
 const TILES: u32 = 8;
 /// Lessons for the guide from each camera subpath of a round, at most on average.
 const LESSONS: f64 = 3.0;
-/// Of the image's mean, added to that of each tile.
+/// Part of the image's mean that is added to the mean of each tile.
 const FLOOR: f64 = 0.1;
 
 /// A contribution to a tile.
@@ -48,7 +48,7 @@ struct Found {
 }
 
 impl Found {
-    /// Of strategies that begin at an emitter, in the weights.
+    /// The share of strategies that begin at an emitter, in the weights.
     fn by_light(&self) -> f32 {
         self.shares[StrategyKind::Connection as usize] + self.shares[StrategyKind::Lens as usize]
     }
@@ -67,7 +67,7 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// Some blocks of some passes, numbered over all of them; what it finds is for a guide too or is not. None if it `is_over`
+    /// Renders `tasks`, blocks numbered over all passes, and records walks too if `for_guide`. None if it `is_over`
     /// before.
     pub(super) fn run(
         compiled: &dyn Compiled,
@@ -109,13 +109,13 @@ impl Trial {
         move |found| (found.value * self.pixels[found.tile] / (means[found.tile] + FLOOR * mean)) as f32
     }
 
-    /// What starts count for; shares in the weights do where they `compete` with other strategies.
+    /// The starts and their weights. Shares of strategies are factors where starts `compete` with other strategies.
     pub(super) fn weights(&self, compete: bool) -> Vec<(Start, f32)> {
         let value = self.values();
         let weight = |found: &Found| value(found) * if compete { found.by_light() } else { 1.0 };
         let mut all: Vec<(Start, f32)> = Vec::new();
         for found in &self.found {
-            // What one light subpath contributed tells of one start.
+            // All contributions of one light subpath belong to one start.
             let mut of_walks = HashMap::new();
             for found in found {
                 let (Some(followed), weight) = (found.start, weight(found)) else { continue };
@@ -130,7 +130,7 @@ impl Trial {
         all
     }
 
-    /// What `guide`, which the samples followed, left of the second moment of what `strategies` bring.
+    /// The part that `guide`, which the samples followed, left of the second moment of `strategies`.
     pub(super) fn second_moment(&self, strategies: Strategies, guide: &Guide) -> f64 {
         let value = self.values();
         let mut tiles = vec![[0.0; 2]; self.pixels.len()];
@@ -165,8 +165,8 @@ impl Trial {
         (0..self.found.len()).into_par_iter().map(of).collect()
     }
 
-    /// Where walks by `strategies` should go, from so many `samples`; if there are too many lessons, some of those with little
-    /// weight stand for others.
+    /// The lessons for walks by `strategies`, from so many `samples`. If there are too many, some of little weight
+    /// stand for others.
     pub(super) fn lessons(&self, strategies: Strategies, samples: f64) -> Vec<Lesson> {
         let value = self.values();
         let each = |part: usize, take: &mut dyn FnMut(f32, &dyn Fn() -> Lesson)| {

@@ -1,5 +1,5 @@
-//! From a description to a medium: parameters are read first; where coefficients vary, what they are like within the
-//! medium's bounds is examined once those are known.
+//! From a description to a medium. Parameters are read first; coefficients that vary are examined within the medium's
+//! bounds once these are known.
 
 use super::{
     DistanceMethod, Heterogeneous, Medium, MediumOverrides, MediumProperties,
@@ -74,7 +74,7 @@ impl MediumDescription {
         given.has_no_end(self.varies()).then_some(&given.location)
     }
 
-    /// The error where it surrounds the scene without end, and what varies in it would have to be examined as far.
+    /// An error if it surrounds the scene without end although it varies: it would have to be examined to infinity.
     pub fn check_end(&self) -> Result<()> {
         match &self.fields {
             Some(fields) if self.extinguishes_without_end() => {
@@ -93,7 +93,7 @@ impl MediumDescription {
         self.medium.transmittance_from_infinity() == Spectrum::ZERO
     }
 
-    /// The medium, which lies `around` where its volumes do not say so themselves.
+    /// The medium; `around` is where it lies, if its volumes do not say so themselves.
     pub fn finish(self, around: MediumBounds, overrides: &MediumOverrides) -> Result<Medium> {
         let has_flakes = self.medium.depends_on_direction();
         let medium = match self.fields {

@@ -1,8 +1,8 @@
-//! Emission of a medium: radiance gained per metre (P03 eq. 11), where it is, and how points of it are sampled.
+//! Emission of a medium: the radiance gained per metre (P03 eq. 11), and how its points are sampled.
 //!
-//! It is given as that gain itself, which needs no extinction; or as the radiance that a thick layer would
-//! have (P03's L_e), times the absorption, with the sign that eq. 11 should have; or as the temperature of
-//! a black body, whose radiance that is by Kirchhoff's law.
+//! A description gives it in one of three ways: as this gain, which needs no extinction; as the radiance of a thick
+//! layer (P03's L_e), times the absorption, with the sign that eq. 11 should have; or as the temperature of a black
+//! body, which has this radiance by Kirchhoff's law.
 
 use super::{Extinction, MediumBounds, MediumProperties};
 use crate::{
@@ -28,7 +28,7 @@ enum Quantity {
 const QUANTITIES: [(&str, Quantity); 3] =
     [("emission", Quantity::Gain), ("radiance", Quantity::Radiance), ("temperature", Quantity::Temperature)];
 
-/// Of the name of a group, so that names of channels have room for it.
+/// Longest name of a group, so that names of channels have room for it.
 const LONGEST_NAME: usize = 200;
 
 /// Beyond Mitsuba: the `group` of emitters that `params` belong to, for images of what each group contributes; any signs
@@ -43,7 +43,7 @@ pub fn group(params: &Params<'_>) -> Result<Option<String>> {
     Ok(Some(name.to_owned()))
 }
 
-/// What media have that emit.
+/// Parameters of media that emit.
 pub(super) const EMISSION: &[Parameter] = rows! {
     light_volume("emission", "W/(m^3 sr)", "Radiance emitted per metre, whether or not the medium absorbs.").ours(),
     light_volume("radiance", "W/(m^2 sr)", "In place of `emission`: radiance of a thick layer; emission is this times sigma_a.").ours(),
@@ -94,7 +94,8 @@ impl EmissionDescription {
         Ok(given.filter(|given| given.scale > 0.0))
     }
 
-    /// True if neither its volume ends somewhere nor the matter that it takes, which `varies` or not.
+    /// True if it has no end: neither its volume ends, nor the matter that it depends on. Only matter that `varies`
+    /// ends.
     pub fn has_no_end(&self, varies: bool) -> bool {
         self.volume.domain().is_none() && (self.quantity == Quantity::Gain || !varies)
     }
@@ -124,7 +125,7 @@ fn volume(params: &Params<'_>, name: &'static str, place: &Place) -> Result<Opti
     Ok(params.optional_color(name)?.map(constant))
 }
 
-/// What absorbs where the emission is.
+/// The absorption where the emission is.
 #[derive(Clone, Debug)]
 pub enum Within {
     /// A homogeneous medium.
@@ -158,7 +159,7 @@ impl Within {
     }
 }
 
-/// How much of what arrives a medium absorbs per metre (1/m).
+/// The absorption coefficient (1/m).
 fn absorption(properties: MediumProperties) -> Spectrum {
     properties.sigma_t * (Spectrum::ONE - properties.albedo).max(Spectrum::ZERO)
 }
@@ -187,7 +188,7 @@ impl Field {
             Quantity::Radiance => absorbed() * self.volume.eval::<Spectrum>(position),
             Quantity::Temperature => absorbed() * black_body::radiance(self.volume.eval(position)),
         };
-        // What should be 0 may be rounded to below it.
+        // Rounding may bring a gain of 0 below 0.
         gain.max(Spectrum::ZERO) * self.scale
     }
 
@@ -236,8 +237,8 @@ fn extent(given: &EmissionDescription, within: &Within, around: &MediumBounds) -
     if ends { known } else { common(known, [around.low, around.high]) }
 }
 
-/// A cell is chosen as if its mean emission were higher by this fraction of its maximum: so that what the few
-/// points examined in it missed is found.
+/// A cell is chosen as if its mean emission were higher by this fraction of its maximum, to find emission that the few
+/// points examined in the cell missed.
 const FLOOR: f32 = 0.1;
 
 /// The emission of a medium.
@@ -245,22 +246,22 @@ const FLOOR: f32 = 0.1;
 pub struct Emission {
     field: Field,
     coarse: Coarse,
-    /// By power.
+    /// Chosen by power.
     cells: Discrete,
-    /// 1 over the integral of the cells' maxima along a line, in the mean over lines through the box.
+    /// 1 over the integral of the cells' maxima along a line, averaged over lines through the box.
     per_line: f32,
     power: DVec3,
     group: Option<String>,
 }
 
 impl Emission {
-    /// What images of groups of emitters show it in; none for the group of the rest.
+    /// The group whose image shows it; none for the group of the rest.
     pub fn group(&self) -> Option<&str> {
         self.group.as_deref()
     }
 
-    /// Examines what is `given` where it is and matter is as `within`, `around` where neither says where that
-    /// is; none where nothing emits.
+    /// Examines the `given` emission in matter as `within`; it lies `around` where neither has bounds. None where
+    /// nothing emits.
     pub fn new(given: EmissionDescription, within: Within, around: &MediumBounds) -> Result<Option<Self>> {
         let [low, high] = extent(&given, &within, around);
         if !low.cmplt(high).all() {
@@ -372,12 +373,12 @@ impl Emission {
         self.coarse.cell_at(position).map_or(0.0, |cell| chosen(cell) as f32)
     }
 
-    /// Rate at which a camera subpath that passes `position` is taken to sample emission there (1/m): the
-    /// density that the weights use, per channel of extinction.
+    /// Nominal rate at which a camera subpath that passes `position` samples emission there (1/m): the density in the
+    /// weights, per channel of extinction.
     ///
-    /// A walk really samples one point on each of its flights, which have random lengths. In thin matter
-    /// that is the density of `sample_along` on a whole line, here that of a mean line; in thick matter the flights
-    /// are of a mean free path.
+    /// A walk really samples one point on each of its flights, which have random lengths. In thin matter the rate is
+    /// the density of `sample_along` on a whole line, here a mean line; in thick matter it is 1 over the mean free path
+    /// of flights.
     #[inline]
     pub fn rate(&self, position: Vec3) -> Spectrum {
         let most = self.coarse.cell_at(position).map_or(0.0, |cell| self.coarse.cell(cell).most);

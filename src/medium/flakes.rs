@@ -1,6 +1,6 @@
-//! Extinction that depends on the direction of flight: along a ray it is that of flakes of unit area, times the area that
-//! they show. A flight is the same in a ray whose metres are as many times as short, and only what was compiled for flakes
-//! asks for them.
+//! Extinction that depends on the direction of flight. Along a ray it is that of flakes of unit area, times the area
+//! that they show. This is the same as a flight along a ray stretched by that area. Only profiles with flakes check for
+//! it.
 
 use super::{DistanceSample, MediaProfile, Medium, MediumInterval};
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
 };
 
 impl MediumInterval {
-    /// The same, `by` times as long in units that are so many times as short.
+    /// The same interval, stretched `by` a factor.
     #[inline]
     fn stretched(&self, by: f32) -> Self {
         Self { segment: self.segment.stretched(by), skipped: self.skipped * by }
@@ -22,7 +22,7 @@ impl Medium {
         M::FLAKES && matches!(self.phase, Phase::Sggx(_))
     }
 
-    /// The factor of extinction for light that flies in unit `direction`, or back: the area that flakes show; else 1.
+    /// Factor on extinction for light in unit `direction` or back: the area that flakes show; else 1.
     #[inline(always)]
     pub fn area<M: MediaProfile>(&self, direction: Vec3) -> f32 {
         match &self.phase {
@@ -31,7 +31,7 @@ impl Medium {
         }
     }
 
-    /// Seen so, extinction along `interval` is as of flakes that show a unit area.
+    /// The interval stretched so that its extinction is that of flakes of unit area.
     #[inline(always)]
     pub(super) fn stretched<M: MediaProfile>(&self, interval: &MediumInterval) -> MediumInterval {
         match &self.phase {
@@ -40,7 +40,7 @@ impl Medium {
         }
     }
 
-    /// What was sampled in the `stretched` interval, back in metres of `interval`.
+    /// A sample of the `stretched` interval, converted back to metres of `interval`.
     #[inline(always)]
     pub(super) fn shrunk<M: MediaProfile>(
         &self,
@@ -62,13 +62,13 @@ impl Medium {
         matches!(self.phase, Phase::Sggx(_))
     }
 
-    /// The greatest extinction (1/m) that there is along any direction.
+    /// The greatest extinction (1/m) in any direction.
     pub fn densest(&self) -> Spectrum {
         let sigma_t = self.bound().sigma_t;
         if let Phase::Sggx(flakes) = &self.phase { sigma_t * flakes.greatest_area() } else { sigma_t }
     }
 
-    /// A segment seen so, whatever was compiled.
+    /// The segment stretched in the same way, for any profile.
     pub(super) fn stretched_segment(&self, segment: &RaySegment) -> RaySegment {
         match &self.phase {
             Phase::Sggx(flakes) => segment.stretched(flakes.area(segment.direction)),

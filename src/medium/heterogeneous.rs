@@ -35,14 +35,14 @@ pub struct Fields {
 }
 
 impl Fields {
-    /// Those of the medium of `params`, whose flights are sampled in the usual way.
+    /// The fields of the medium of `params`, with the default tracker.
     pub fn new(sigma_t: Volume, albedo: Volume, params: &Params<'_>, place: &Place) -> Self {
         let (recentre, location) = (place.recentre, params.location().clone());
         let (scale, tracker, step, march_error) = (1.0, DistanceMethod::Auto, None, 1e-3);
         Self { sigma_t, scale, albedo, tracker, step, march_error, recentre, location }
     }
 
-    /// The extinction that `overrides` makes of them, before its factor; the factor; and the albedo.
+    /// Extinction before its factor, the factor, and the albedo, all with `overrides` applied.
     fn overridden(&self, overrides: &MediumOverrides) -> (Volume, f32, Volume) {
         let Self { sigma_t, scale, albedo, .. } = self;
         if !overrides.absorbing {
@@ -90,7 +90,7 @@ impl Heterogeneous {
         let (volume, scale, albedo) = fields.overridden(&overrides);
         let choice = match (overrides.tracker, fields.tracker) {
             (Some(forced), _) => forced,
-            // What is left of extinction may not be the kind of volume that its tracker was named for.
+            // The absorption that is left may be a kind of volume to which the requested tracker does not apply.
             (None, requested) if overrides.absorbing && !requested.applies_to(&volume) => {
                 DistanceMethod::Auto
             }
@@ -135,7 +135,7 @@ impl Heterogeneous {
         self.fields.tracker
     }
 
-    /// The tracker that takes precedence over that, if any.
+    /// The tracker that overrides the requested one, if any.
     pub fn forced(&self) -> Option<DistanceMethod> {
         self.overrides.tracker
     }
@@ -228,7 +228,7 @@ impl Heterogeneous {
     }
 }
 
-/// A ratio of transmittances is evaluated no deeper than this: exponential depths are less, whatever lies beyond.
+/// A ratio of transmittances is evaluated no deeper than this: sampled exponential depths are less.
 const DEEPEST: f32 = 80.0;
 
 /// A bound may lie this far above what it bounds, relative to it: volumes widen theirs by their rounding.

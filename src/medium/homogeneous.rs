@@ -31,8 +31,8 @@ impl Homogeneous {
         remaining / self.sigma_t::<L>().hero(hero)
     }
 
-    /// The same, from where the ray starts. A collision in what was `skipped` happens there: nearer to the surface it
-    /// might be behind it.
+    /// The same, from where the ray starts. A collision within the `skipped` distance is put at the start: nearer to
+    /// the surface it might end up behind it.
     #[inline]
     pub(super) fn collision<L: Channels>(&self, skipped: f32, hero: usize, remaining: f32) -> f32 {
         let path = self.free_path::<L>(hero, remaining);
@@ -71,7 +71,7 @@ impl Homogeneous {
         DistanceSample::exact(Some((path - interval.skipped).max(0.0)), depth, hero)
     }
 
-    /// What remains of light that comes from infinitely far through the medium.
+    /// Transmittance of light from infinity through the medium.
     pub(super) fn transmittance_from_infinity(&self) -> Spectrum {
         self.0.sigma_t.map(|sigma_t| if sigma_t > 0.0 { 0.0 } else { 1.0 })
     }

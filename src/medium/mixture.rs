@@ -1,7 +1,7 @@
-//! Several media in one place: their coefficients add. A collision is one of the medium that comes first, of flights
-//! through each of them alone; the vertex has that medium's sigma_t, albedo and phase function. Its density is that of
-//! the flight, exp(-depth of all), times the sigma_t of that medium: the sum over the media is what a medium of the sums
-//! of their coefficients would have.
+//! Several media in one place: their coefficients add. Each medium samples a flight of its own, and the first collision
+//! counts; the vertex has the sigma_t, albedo and phase function of its medium. Its density is that of the flight,
+//! exp(-depth of all), times the sigma_t of this medium. Summed over the media, this is the density in a medium of
+//! summed coefficients.
 
 use super::{Attenuation, DistanceSample, MediaProfile, Medium, MediumInterval, MediumProperties, Unforced};
 use crate::{
@@ -22,7 +22,7 @@ impl Mixture {
         (self.0.iter().fold(Spectrum::ZERO, sum), self.0.iter().fold(Spectrum::ZERO, largest))
     }
 
-    /// What the medium that collides is like at `position`.
+    /// Properties at `position` of the medium that collides.
     #[cold]
     #[inline(never)]
     pub(super) fn properties_at<M: MediaProfile>(
@@ -100,7 +100,7 @@ impl Mixture {
     }
 
     /// See [`Medium::sample_distance`]. Flights have no memory: every medium draws its own, and the optical depth that
-    /// the flight came with is left for the media behind these.
+    /// the flight came with is left for the media behind.
     #[cold]
     #[inline(never)]
     pub(super) fn sample_distance<M: MediaProfile>(

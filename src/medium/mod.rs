@@ -1,4 +1,4 @@
-//! Participating media: coefficients, a phase function, what they emit, and where they vary, how flights are sampled.
+//! Participating media: coefficients, phase functions, emission, and the sampling of flights where coefficients vary.
 
 mod description;
 pub mod distance;
@@ -42,10 +42,10 @@ impl MediumIndex {
 pub struct Medium {
     /// Directions after scattering.
     pub phase: Phase,
-    /// What it emits.
+    /// Its emission.
     pub emission: Option<Arc<Emission>>,
-    /// A homogeneous medium is its own bound: what was compiled without heterogeneous media looks no further than
-    /// this, and what was compiled with them calls `coefficients` first.
+    /// A homogeneous medium is its own bound. Profiles without heterogeneous media use only this; profiles with them
+    /// look at `coefficients` first.
     bound: Homogeneous,
     coefficients: Coefficients,
     /// The description of the emission, to build it again for another time.
@@ -59,11 +59,11 @@ enum Coefficients {
     Homogeneous,
     /// Varying, below the medium's bound.
     Heterogeneous(Arc<Heterogeneous>),
-    /// Those of several media in one place.
+    /// The sum of several media in one place.
     Mixture(Mixture),
 }
 
-/// How a medium is asked by what was compiled for a profile.
+/// A medium as a profile sees it.
 enum Model<'a> {
     Homogeneous(&'a Homogeneous),
     Heterogeneous(&'a Heterogeneous),
@@ -87,7 +87,7 @@ pub struct MediumProperties {
     pub sigma_t: Spectrum,
     /// sigma_s / sigma_t, in [0, 1].
     pub albedo: Spectrum,
-    /// The medium, whose phase function it scatters by: one of those that overlap, where several do.
+    /// The medium whose phase function scatters; one of several where media overlap.
     pub medium: MediumIndex,
 }
 
@@ -113,8 +113,9 @@ impl MediumProperties {
 pub struct MediumInterval {
     /// The stretch.
     pub segment: RaySegment,
-    /// How far before it the medium begins (m), 0 but behind a boundary: a ray starts a rounding error off the surface.
-    /// In a homogeneous medium that counts, for a mean free path may be as short. Where coefficients vary it does not.
+    /// Distance from the start of the medium to the stretch (m). It is 0 except behind a boundary, where a ray starts a
+    /// rounding error off the surface. In a homogeneous medium it counts, for a mean free path may be as short. Where
+    /// coefficients vary it does not.
     pub skipped: f32,
 }
 
@@ -130,7 +131,7 @@ impl MediumInterval {
     }
 }
 
-/// What light that crosses an interval beside forced collisions has left (see [`Medium::unforced`]).
+/// Light that crosses an interval in which collisions are forced (see [`Medium::unforced`]).
 #[derive(Clone, Copy, Debug)]
 pub struct Unforced<L> {
     /// Transmittance, or an unbiased estimate of it.
@@ -160,7 +161,7 @@ impl Medium {
         Self { bound, coefficients: Coefficients::Heterogeneous(Arc::new(varying)), ..self }
     }
 
-    /// Several media in one place: their coefficients add. What they emit, each emits for itself.
+    /// Several media in one place: their coefficients add. Each emits for itself.
     pub fn mixture(media: Vec<Self>) -> Self {
         let mixture = Mixture(media.into());
         let (sigma_t, albedo) = mixture.bound();
@@ -198,7 +199,7 @@ impl Medium {
         Ok(Self { emission, given: Some(Box::new((given, around))), ..self })
     }
 
-    /// What describes a medium that varies; none of others. For reports.
+    /// The model of a medium that varies; none for others. For reports.
     pub fn heterogeneous(&self) -> Option<&Heterogeneous> {
         match &self.coefficients {
             Coefficients::Heterogeneous(varying) => Some(varying),
@@ -206,7 +207,7 @@ impl Medium {
         }
     }
 
-    /// Only what was compiled for media that vary asks whether this one does.
+    /// Only profiles with media that vary ask whether this one does.
     #[inline(always)]
     fn model<M: MediaProfile>(&self) -> Model<'_> {
         if M::HETEROGENEOUS { self.any_model() } else { Model::Homogeneous(&self.bound) }
@@ -242,8 +243,7 @@ impl Medium {
         self.heterogeneous().map(|varying| bounds(varying.extinction()))
     }
 
-    /// What remains of light that comes from infinitely far through it: all where it varies, for then it ends
-    /// somewhere.
+    /// Transmittance of light from infinity: 1 where the medium varies, for then it ends somewhere.
     #[inline]
     pub fn transmittance_from_infinity(&self) -> Spectrum {
         if self.extent().is_some() { Spectrum::ONE } else { self.bound.transmittance_from_infinity() }
@@ -274,7 +274,7 @@ impl Medium {
         }
     }
 
-    /// What crosses an interval; none where an estimate of it is 0.
+    /// Attenuation along an interval; none where an estimate of transmittance is 0.
     #[inline(always)]
     pub fn attenuation<M: MediaProfile>(
         &self,
@@ -309,8 +309,8 @@ impl Medium {
         }
     }
 
-    /// How far along a ray (m) that left a boundary `skipped` metres before a distance of the optical depth `remaining`
-    /// may lie: no need to look for surfaces beyond. Infinite where that has to be searched for.
+    /// Distance (m) along a ray at which the optical depth may be `remaining`; no surface beyond it matters. The ray
+    /// starts `skipped` metres behind a boundary. Infinite where the distance has to be searched for.
     #[inline(always)]
     pub fn reach<M: MediaProfile>(&self, skipped: f32, hero: usize, remaining: f32) -> f32 {
         match self.model::<M>() {
@@ -320,8 +320,8 @@ impl Medium {
         }
     }
 
-    /// Of `skipped` metres behind a boundary, those before a collision where the hero's optical depth is `spent`; of no
-    /// meaning where coefficients vary.
+    /// The part of `skipped` metres behind a boundary that lies before the hero's optical depth `spent`; meaningless
+    /// where coefficients vary.
     #[inline]
     pub fn skipped_before<M: MediaProfile>(&self, skipped: f32, hero: usize, spent: f32) -> f32 {
         skipped.min(self.bound.free_path::<M::Channels>(hero, spent))
@@ -350,7 +350,7 @@ impl Medium {
         self.shrunk::<M>(interval, sample)
     }
 
-    /// What crosses an interval whose optical depth is `depth` while collisions in it are forced.
+    /// Light that crosses an interval of optical depth `depth` while collisions in it are forced.
     pub fn unforced<M: MediaProfile>(
         &self,
         interval: &MediumInterval,

@@ -1,4 +1,4 @@
-//! What an integrator or the command line sets for all media of a scene, whatever their descriptions say.
+//! Settings of an integrator or the command line for all media of a scene, over their descriptions.
 
 use super::distance::DistanceMethod;
 
@@ -16,7 +16,8 @@ pub struct MediumOverrides {
 }
 
 impl MediumOverrides {
-    /// These, and where they say nothing, `others`. A step or an error goes before both of those: it says how fine the march is.
+    /// These overrides, and `others` where these are unset. A step or an error replaces both of `others`: each says how
+    /// fine the march is.
     pub fn over(self, others: Self) -> Self {
         let is_fineness = self.step.is_some() || self.march_error.is_some();
         let Self { step, march_error, .. } = if is_fineness { self } else { others };

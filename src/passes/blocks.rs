@@ -17,8 +17,8 @@ pub const PIXELS_PER_BLOCK: usize = 1024;
 pub struct Blocks {
     pixels: usize,
     count: usize,
-    /// Coprime to `pixels`: the pixels of a block lie this far apart, so that what they have in common (their
-    /// light cache) shows nowhere as a pattern.
+    /// Distance between the pixels of a block, coprime to `pixels`: the noise that they share (their light cache) shows
+    /// no pattern.
     stride: usize,
     walks_per_block: u64,
     heroes: u64,
@@ -37,20 +37,20 @@ pub struct CameraStart {
     pub position: Vec2,
     /// Through which point of the aperture (m).
     pub aperture: Vec2,
-    /// What it counts for.
+    /// Its weight.
     pub weight: f32,
-    /// Which light subpath of its block it has for itself, where each has one.
+    /// The light subpath of its block that belongs to it alone, where each has one.
     pub walk: usize,
 }
 
-/// Blocks that so many camera `subpaths` are, at least.
+/// Least number of blocks with so many camera `subpaths`.
 pub fn blocks_for(pixels: usize, subpaths: usize) -> usize {
     (subpaths * pixels.div_ceil(PIXELS_PER_BLOCK)).div_ceil(pixels.max(1))
 }
 
 impl Blocks {
-    /// Divides `pixels`, each of which has `light_walks` light subpaths in a pass, for estimators of so many hero channels,
-    /// whose walks draw from streams of `sampler`.
+    /// Divides `pixels` into blocks. Each pixel has `light_walks` light subpaths in a pass; estimators have so many
+    /// hero channels (`heroes`); walks draw from streams of `sampler`.
     pub fn new(pixels: usize, heroes: usize, sampler: Sampler, light_walks: f32) -> Self {
         Self::of_size(PIXELS_PER_BLOCK, pixels, heroes, sampler, light_walks)
     }
@@ -66,8 +66,8 @@ impl Blocks {
         Self { pixels, count, stride, walks_per_block, heroes, sampler, inverse: None }
     }
 
-    /// The same where every pixel has one of the light subpaths for itself, of which there are as many: both have the same
-    /// hero channel, and a light subpath's random numbers are spread evenly over the samples of its pixel.
+    /// The same with one light subpath per pixel, which belongs to it alone. Both have the same hero channel, and the
+    /// light subpath's random numbers are spread evenly over the samples of its pixel.
     pub fn paired(self) -> Self {
         Self { inverse: Some(inverse(self.stride, self.pixels)), ..self }
     }
@@ -106,12 +106,12 @@ impl Blocks {
         self.pixels
     }
 
-    /// Which of its block's light subpaths `pixel` has for itself; 0 where none has.
+    /// The light subpath of its block that belongs to `pixel` alone; 0 where none does.
     fn walk_of(&self, pixel: usize) -> usize {
         self.home(pixel).map_or(0, |(_, number)| number)
     }
 
-    /// The block of `pixel` and its number there, where that is the number of its light subpath too.
+    /// The block of `pixel` and its number there, if this is also the number of its light subpath.
     pub fn home(&self, pixel: usize) -> Option<(usize, usize)> {
         let place = (pixel as u128 * self.inverse? as u128 % self.pixels as u128) as usize;
         // The last block that begins there or before.
@@ -143,9 +143,8 @@ impl Blocks {
         (stream, hero)
     }
 
-    /// The random numbers of light subpath `walk` of a pass. All walks of a block contribute to the same
-    /// pixels: a sampler that distributes them evenly distributes all of them together, pass after pass; unless each belongs to
-    /// a pixel.
+    /// The random numbers of light subpath `walk` of a pass. All walks of a block contribute to the same pixels: unless
+    /// each belongs to a pixel, the sampler spreads all of them evenly together, pass after pass.
     #[inline]
     pub fn light_stream(&self, seed: u64, pass: usize, walk: u64) -> Stream {
         if self.inverse.is_some() {
@@ -174,7 +173,7 @@ impl Blocks {
 }
 
 impl CameraStart {
-    /// The camera subpath from here, which `observer` sees, connected to the light subpaths of `cache`.
+    /// Traces the camera subpath from here, connected to the light subpaths of `cache`; `observer` sees it.
     #[inline]
     pub fn trace<P: Profile, R: Observer>(
         mut self,

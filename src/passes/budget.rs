@@ -3,7 +3,7 @@
 use crate::film::accumulator::MOST_PASSES;
 use std::{ops::Range, time::Duration};
 
-/// What a thread does in a second, where nothing is known: scenes differ by 1e4 to 3e6.
+/// Assumed samples of a thread per second: scenes vary from 1e4 to 3e6.
 const SAMPLES_PER_SECOND: f64 = 2e5;
 
 /// Samples per pixel, time, or an interruption, whichever comes first.
@@ -36,7 +36,7 @@ impl Budget {
         Self { samples_per_pixel: Some(samples_per_pixel), ..Self::ENDLESS }
     }
 
-    /// The samples of every pixel, as far as time allows; no image has more than [`MOST_PASSES`].
+    /// The samples wanted of every pixel, if time allows; at most [`MOST_PASSES`].
     pub fn wanted(&self) -> Range<u64> {
         let count = self.samples_per_pixel.unwrap_or(MOST_PASSES).min(MOST_PASSES);
         self.first_sample..self.first_sample.saturating_add(count)

@@ -1,5 +1,6 @@
-//! The compiled estimator: chosen once, outermost. What lies behind [`Compiled`] is compiled for every profile, so only
-//! what walks through the scene belongs there; observers, and loops over passes, checkpoints and files, are compiled once.
+//! The compiled estimator: chosen once, outermost. Code behind [`Compiled`] is compiled for every profile, so only code
+//! that walks through the scene belongs there. Observers, and loops over passes, checkpoints and files, are compiled
+//! once.
 
 use super::{
     Settings,
@@ -25,24 +26,25 @@ use crate::{
     },
 };
 
-/// What every estimator can do, whatever its profile: whole blocks and walks, so that the call costs nothing.
+/// What every estimator can do, whatever its profile. Calls are for whole blocks and walks, so that dispatch costs
+/// nothing.
 pub trait Compiled: Send + Sync {
-    /// What it shows.
+    /// The scene that it renders.
     fn scene(&self) -> &Scene;
-    /// What it is seen on.
+    /// The film that it renders to.
     fn film(&self) -> &Film;
     /// How pixels are divided.
     fn blocks(&self) -> &Blocks;
     /// How many channels may sample distances.
     fn heroes(&self) -> usize;
-    /// The starts that light subpaths were given.
+    /// The learnt starts of light subpaths.
     fn starts(&self) -> Option<&Starts>;
     /// Where the camera subpath of `pixel` in `pass` starts.
     fn camera_start(&self, pass: usize, pixel: usize) -> CameraStart;
     /// One sample of every pixel of `block` that `wants` one.
     fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome;
-    /// One sample of each of `pixels`, connected to the light subpaths of a block of that number, which need not be theirs;
-    /// where every pixel has one for itself, to that.
+    /// One sample of each of `pixels`, connected to the light subpaths of `block`, which need not be their own; where
+    /// every pixel has one light subpath, to this.
     fn shade(&self, pass: usize, block: usize, pixels: &[u32]) -> Outcome;
     /// Shows a block to `observer`: the light subpaths, and one sample of every pixel that `wants` one.
     fn observe(
@@ -60,8 +62,8 @@ pub trait Compiled: Send + Sync {
     fn first_interaction(&self, primary: Ray, stream: &mut Stream) -> Option<Interaction>;
 }
 
-/// The estimator of the profile that `settings` name, or of the one that their heuristic is compiled for, by what was `learnt`,
-/// with blocks of so many pixels.
+/// The estimator of the profile that `settings` name, or of the one that their heuristic is compiled for. It uses what
+/// was `learnt`, and has blocks of so many pixels.
 pub fn choose<'a>(
     scene: &'a Scene,
     film: &'a Film,
@@ -95,7 +97,7 @@ pub fn choose<'a>(
     prepare(scene, film, settings, learnt, per_block)
 }
 
-/// The same whose contributions tell what each kind of strategy has of their weights.
+/// The same, with the share of each kind of strategy in the weights of contributions.
 pub fn by_kind<'a>(
     scene: &'a Scene,
     film: &'a Film,

@@ -1,5 +1,5 @@
-//! What goes wrong inside a render costs as little as it can, and is reported: a contribution that is no finite number
-//! is left out, and code that panics costs the pixel sample that it was at.
+//! Faults inside a render cost as little as possible, and are reported. A contribution that is not finite is left out;
+//! a panic costs the pixel sample at hand.
 
 use super::pass::Outcome;
 use serde::{Deserialize, Serialize};
@@ -43,7 +43,7 @@ pub struct Faults {
     pub first: Vec<Fault>,
 }
 
-/// So many are described.
+/// Number of faults that are described.
 const DESCRIBED: usize = 8;
 
 impl Faults {
@@ -87,8 +87,8 @@ impl fmt::Display for Cause {
 /// Pixels of a block that may fail before all of it is given up.
 const MOST_FAILURES: usize = 64;
 
-/// A block by `render`, which gets the pixels to leave out, and says which one it is at. A pixel where it panics is left
-/// out, and the others rendered again; where a panic is not that of a pixel, the block adds nothing.
+/// Runs `render` on a block. It gets the pixels to leave out, and reports the pixel that it is at. A pixel where it
+/// panics is left out, and the others are rendered again. If a panic belongs to no pixel, the block adds nothing.
 pub fn guarded(sample: usize, render: impl Fn(&[u32], &Cell<Option<u32>>) -> Outcome) -> Outcome {
     let (mut failed, mut faults) = (Vec::new(), Vec::new());
     loop {

@@ -15,7 +15,7 @@ pub(super) fn fill(pixels: &mut [Spectrum], known: &[bool], width: usize) {
     }
 }
 
-/// Mean colours of an image of colours times weight, with weights; where the weight is 0, that of a coarser image.
+/// Mean colours of an image of colours times weight, with weights; where the weight is 0, from a coarser image.
 fn pulled(sums: Vec<(Spectrum, f32)>, width: usize) -> Vec<Spectrum> {
     let height = sums.len() / width.max(1);
     let is_full = sums.iter().all(|(_, weight)| *weight > 0.0);

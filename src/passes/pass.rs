@@ -23,7 +23,7 @@ impl Outcome {
         Self { camera, light, faults }
     }
 
-    /// Nothing but what went wrong.
+    /// Only faults.
     pub fn of_faults(faults: Vec<Fault>) -> Self {
         Self { faults, ..Self::default() }
     }
@@ -71,13 +71,13 @@ impl Pass {
         self.light.fill(Spectrum::ZERO);
     }
 
-    /// What a pass says of `pixel`, whose block is among those added; they are the fraction `done` of all: the
-    /// light subpaths that have been traced stand for those that have not.
+    /// The estimate of `pixel`, whose block has been added. The added blocks are the fraction `done` of all; their
+    /// light subpaths stand for those of the others.
     pub fn estimate(&self, pixel: usize, done: f32) -> Spectrum {
         self.camera[pixel] + self.light[pixel] / done
     }
 
-    /// A plane, the image or a layer, as the first `done` of `blocks` show it; pixels of the others take the mean of those
+    /// A plane (the image or a layer) from the first `done` of `blocks`; pixels of the others take the mean of those
     /// around them.
     pub fn pixels(&self, blocks: &Blocks, done: usize, width: usize, plane: usize) -> Vec<Spectrum> {
         let first = plane * blocks.pixel_count();

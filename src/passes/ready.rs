@@ -52,7 +52,7 @@ impl<'a, P: Profile> Ready<'a, P> {
         let (pixels, heroes, sampler) = (film.len(), P::Channels::COUNT, settings.sampler);
         let blocks = match connections {
             Connections::Cached => Blocks::of_size(per_block, pixels, heroes, sampler, effort.light_walks),
-            // Which light subpath a pixel has does not depend on what it is rendered with.
+            // The light subpath of a pixel does not depend on how the image is rendered.
             Connections::All => Blocks::new(pixels, heroes, sampler, 1.0).paired(),
         };
         let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
@@ -97,14 +97,13 @@ impl<'a, P: Profile> Ready<'a, P> {
         self.estimator.trace_light(cache, observer, hero, &mut stream);
     }
 
-    /// Numbers of the light subpaths of `block`, if they have something to do.
+    /// Numbers of the light subpaths of `block`, if a strategy needs them.
     fn light_paths(&self, block: usize) -> Range<u64> {
         let all = self.blocks.light_paths(block);
         if self.estimator.needs_light_walks() { all } else { all.start..all.start }
     }
 
-    /// What a sample of `pixel` adds up to without contributions that are no finite numbers: it is made again, and looked at
-    /// one by one.
+    /// The sum of the finite contributions of a sample of `pixel`: renders it again and checks each contribution.
     #[cold]
     fn finite_part(&self, pass: usize, block: usize, pixel: usize, faults: &mut Vec<Fault>) -> Spectrum {
         let mut finite = Finite {
@@ -237,10 +236,10 @@ impl Observer for Splatted<'_> {
     }
 }
 
-/// Adds up what of a camera subpath's contributions is finite, and notes what is not.
+/// Adds up the finite contributions of a camera subpath, and notes the others as faults.
 struct Finite<'a> {
     film: &'a Film,
-    /// Where faults are, but for their cause.
+    /// A fault at this place, without its cause.
     place: Fault,
     sum: Spectrum,
     faults: &'a mut Vec<Fault>,

@@ -1,16 +1,17 @@
-//! What light subpaths contribute to pixels. Memory is bounded by the pixels, not by the vertices: walks in thick white media have
-//! millions of these, and the camera may see each.
+//! What light subpaths contribute to pixels. Memory is bounded by the number of pixels, not of vertices: walks in thick
+//! white media have millions of vertices, and the camera may see each.
 
 use crate::math::{DVec3, Spectrum};
 
-/// So many are kept one by one, in the order in which they came: 16 MB, a thousand for each light subpath of a block.
+/// Number of splats kept one by one, in the order in which they came: 16 MB, a thousand for each light subpath of a
+/// block.
 const FEW: usize = 1 << 20;
 
-/// Values and the pixels that they belong to, or pixels of planes, as the caller numbers them.
+/// Values and their pixels, or pixels of planes, as the caller numbers them.
 #[derive(Debug, Default)]
 pub struct Splats {
     values: Vec<(u32, Spectrum)>,
-    /// So many were left when those of each pixel were last added up.
+    /// How many were left when those of each pixel were last added up.
     left: usize,
 }
 

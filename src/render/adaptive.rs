@@ -1,26 +1,25 @@
 //! Stopping where every pixel's error is small enough (P03T A.2.3), without bias.
 //!
-//! A pixel that stops because its own samples look calm stops too soon where they happened to be low, and its mean is
-//! biased for it. Hence two halves of independent passes: a pixel's mean over one half ends where the *other* half's
-//! samples say that the error is small enough, so that the decision to stop is independent of the samples
-//! that are averaged.
+//! A pixel that stops because its own samples look calm stops too soon where they happened to be low: its mean is
+//! biased. Hence two halves of independent passes. A pixel's mean over one half ends where the *other* half's samples
+//! say that the error is small enough: the decision to stop is independent of the samples that are averaged.
 //!
-//! What light subpaths contribute to the film is a mean over passes too, of every pixel at once: it ends for
-//! a half where the last pixel of the other half has converged.
+//! The contributions of light subpaths to the film are a mean over passes too, of all pixels at once. For a half it
+//! ends when the last pixel of the other half has converged.
 
 use super::{image::Progress, monitor::Stopwatch, subject::Stage, sums::halves::Halves};
 use crate::error::Result;
 use std::time::Duration;
 
-/// Passes up to the next check over those up to the last: few checks, so that chance has few opportunities to
-/// stop early.
+/// Passes up to the next check over those up to the last. Checks are few, so that chance has few opportunities to stop
+/// early.
 const GROWTH: f64 = 1.25;
 
 /// A render to a precision at work.
 pub(super) struct Adaptive<'a, 's> {
     pub stage: &'a Stage<'s>,
     pub stopwatch: &'a Stopwatch,
-    /// Called now and then; what it sees at the end is that from which the render can go on.
+    /// Called now and then; the halves that it sees last are those to resume from.
     pub watch: &'a mut dyn FnMut(Progress, &Halves),
 }
 
@@ -31,7 +30,7 @@ impl Adaptive<'_, '_> {
         while halves.active.contains(&true) {
             if !self.advance(halves, before)? {
                 self.tell(halves, true);
-                // Not what the checks of a render that goes on would see: they come after other numbers of passes.
+                // After `tell`: a resumed render checks after other numbers of passes.
                 halves.look();
                 return Ok(());
             }

@@ -16,7 +16,7 @@ use std::f32::consts::PI;
 
 /// Surfaces that a ray passes, or is mirrored or refracted by, before it gives up.
 const MOST_LEGS: u32 = 64;
-/// Where there are no more emitters than this, all light every point; else so many are drawn for each.
+/// Up to this many emitters light every point; of more, this many are drawn for each point.
 const LIGHTS_PER_POINT: usize = 16;
 /// Rays that measure how bright surfaces are.
 const PILOT_RAYS: usize = 1024;
@@ -48,9 +48,9 @@ fn pilot_rays(compiled: &dyn Compiled, seed: u64) -> impl Iterator<Item = (Ray, 
 struct Sight {
     /// The part of radiance from there that remains.
     through: Spectrum,
-    /// What share of the veil is before it.
+    /// The share of the veil before it.
     veiled: Spectrum,
-    /// What emitters on the way, and the surface itself, emit.
+    /// Radiance of emitters on the way and of the surface itself.
     emitted: Spectrum,
     end: End,
 }
@@ -69,7 +69,7 @@ impl<'a> Preview<'a> {
         Self::new(compiled.scene(), fog, options.hide_emitters, pilot_rays(compiled, *seed))
     }
 
-    /// One sample of each of `pixels`, as the camera subpaths of `compiled` begin.
+    /// One sample of each of `pixels`, along the primary rays of `compiled`.
     pub(super) fn show(
         &self,
         compiled: &dyn Compiled,
@@ -87,7 +87,7 @@ impl<'a> Preview<'a> {
         Outcome::of_parts(pixels.map(show).collect(), Vec::new(), Vec::new())
     }
 
-    /// Prepares to show `scene`. Where `fog` leaves it open, radiance is measured along `rays`.
+    /// Prepares to show `scene`. Radiance that `fog` does not set is measured along `rays`.
     fn new(
         scene: &'a Scene,
         fog: &FogSettings,
@@ -132,7 +132,7 @@ impl<'a> Preview<'a> {
         veiled * self.veil + emitted + through * behind
     }
 
-    /// Follows a ray to the first surface that scatters light; what is smooth or not there it passes as light does.
+    /// Follows a ray to the first surface that scatters light. At smooth surfaces and nulls it goes on as light does.
     fn follow(&self, ray: Ray, stream: &mut Stream) -> Sight {
         let nothing = End::Radiance(Spectrum::ZERO);
         let mut sight =
@@ -210,8 +210,8 @@ impl<'a> Preview<'a> {
         sample.map_or(Spectrum::ZERO, |sample| sample.value / sample.cosine)
     }
 
-    /// Light of all emitters reflected at a point, as if nothing blocked it. A sky that is the same
-    /// everywhere is not among them: it is ambient light.
+    /// Light of all emitters reflected at a point, as if nothing blocked it. A uniform sky is left out: it is ambient
+    /// light.
     fn lit(&self, point: &SurfacePoint, incoming: Vec3, stream: &mut Stream) -> Spectrum {
         let Scene { lights, geometry, .. } = self.scene;
         let reference = point.position;
@@ -283,13 +283,13 @@ pub(super) fn deflect<'a>(
     Some((segment.deflected(point, ray), sample.weight))
 }
 
-/// Mean radiance of what surrounds the scene, if anything does.
+/// Mean radiance of the environment, if there is one.
 fn surroundings(scene: &Scene) -> Option<Spectrum> {
     let sky = scene.lights.all[scene.lights.environment? as usize].emitter.environment()?;
     Some(sky.fluence().as_vec3() / (4.0 * PI))
 }
 
-/// Radiance of skies that are the same everywhere: ambient light, known without samples.
+/// Radiance of uniform skies: ambient light, known without samples.
 fn even_sky(scene: &Scene) -> Spectrum {
     scene.lights.all.iter().filter_map(|light| even_radiance(&light.emitter)).sum()
 }

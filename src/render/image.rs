@@ -1,4 +1,4 @@
-//! Images as renders make them, and what is said of them meanwhile.
+//! Images of renders, and their progress.
 
 use crate::{
     film::{Channel, noise::Noise},
@@ -8,7 +8,7 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// How far a render is.
+/// The progress of a render.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
     /// Pixel samples done, over all pixels.
@@ -38,8 +38,8 @@ pub struct Image {
     pub elapsed: Duration,
     /// Its estimated relative error, once it is known.
     pub noise: Option<Noise>,
-    /// The part of each pixel that the scene covers, in [0, 1] for filters without negative lobes; empty
-    /// where it was not requested.
+    /// The part of each pixel that the scene covers, in [0, 1] for filters without negative lobes; empty if not
+    /// requested.
     pub alpha: Vec<f32>,
     /// The channels of all layers, in their order.
     pub layers: Vec<Channel>,
@@ -67,8 +67,9 @@ pub struct Snapshot {
     pub elapsed: Duration,
 }
 
-/// The precision required of every pixel: that its value is off by less than `error`, relative to it and a hundredth of
-/// the image's mean luminance together (see [`Relative::difference`]); in every channel, with probability `confidence`.
+/// The precision required of every pixel. Its value is off by less than `error`, relative to the sum of the value and a
+/// hundredth of the image's mean luminance (see [`Relative::difference`]); in every channel, with probability
+/// `confidence`.
 ///
 /// [`Relative::difference`]: crate::math::relative::Relative::difference
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
@@ -82,7 +83,7 @@ pub struct Precision {
 /// How a render with a requested precision ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reached {
-    /// The part of the pixels that are within the error, by what their samples say.
+    /// The part of the pixels that are within the error, as estimated from their samples.
     pub share: f64,
     /// Samples taken of each pixel by camera subpaths.
     pub samples: Vec<u32>,

@@ -31,18 +31,18 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Blocks that are rendered between two readings of the clock: enough to keep any machine's threads busy, and
-/// independent of their number.
+/// Blocks rendered between two readings of the clock: enough to keep the threads of any machine busy, and independent
+/// of their number.
 pub(super) const BLOCKS_AT_ONCE: usize = 64;
 
 /// How much of a guide is learnt.
 #[derive(Clone, Copy)]
 enum Learning {
-    /// What it takes to begin; nothing, if walks follow no guide.
+    /// Enough to begin; nothing if walks follow no guide.
     ToBegin,
     /// More for later samples.
     Growing,
-    /// So many rounds for samples after the first look: there are some, however little time there is.
+    /// So many rounds for samples after the first look, however little time there is.
     Rounds(usize),
 }
 
@@ -53,13 +53,13 @@ pub struct Instrument<'a> {
     /// Where.
     pub film: &'a Film,
     pub(super) settings: Settings,
-    /// By what was learnt before the first sample.
+    /// The estimator with what was learnt before the first sample.
     pub compiled: Box<dyn Compiled + 'a>,
     learning: Learning,
-    /// By what is learnt in later rounds.
+    /// The estimators with what is learnt in later rounds.
     later: [OnceLock<Box<dyn Compiled + 'a>>; LATER_ROUNDS],
     per_block: usize,
-    /// What the image is sorted into besides.
+    /// Sorts contributions into layers.
     sorter: Option<Sorter>,
 }
 
@@ -78,8 +78,8 @@ impl<'a> Instrument<'a> {
         Self { scene, film, settings, compiled, learning, later, per_block, sorter }
     }
 
-    /// One that sees `scene`, the same at another time, for `pass`, by what is learnt for that. What moved out of its place
-    /// costs precision, not truth.
+    /// An instrument for `scene`, the same scene at another time, with what is learnt for `pass`. Where things have
+    /// moved, learning helps less, but nothing is biased.
     pub(super) fn seeing<'b>(&self, scene: &'b Scene, pass: usize) -> Instrument<'b>
     where
         'a: 'b,
@@ -102,8 +102,8 @@ impl<'a> Instrument<'a> {
         Self { sorter: Sorter::new(self.scene, layers), ..self }
     }
 
-    /// The same for renders to a `precision`. Their passes leave out pixels and so do not say how many samples there are: all
-    /// after the first look follow the same guide.
+    /// The same for renders to a `precision`. Their passes leave out pixels and so do not tell the number of samples:
+    /// all after the first look follow the same guide.
     pub(super) fn with_precision(self, precision: Precision) -> Self {
         let learning = match self.learning {
             Learning::Growing => Learning::Rounds(training::rounds_to(precision.error)),
@@ -112,7 +112,7 @@ impl<'a> Instrument<'a> {
         Self { learning, ..self }
     }
 
-    /// Where a camera subpath through each pixel interacts first, see [`Estimator::first_interaction`].
+    /// The first interaction of a camera subpath through each pixel, see [`Estimator::first_interaction`].
     ///
     /// [`Estimator::first_interaction`]: crate::transport::Estimator::first_interaction
     pub fn first_interactions(&self) -> Vec<Option<Interaction>> {
@@ -135,8 +135,8 @@ impl<'a> Instrument<'a> {
         }
     }
 
-    /// The estimator of `pass`, by what is learnt for it. Tasks of a render find that [learnt](Self::learn), for it takes all
-    /// threads.
+    /// The estimator of `pass`, with what is learnt for it. Tasks of a render must find this [learnt](Self::learn), for
+    /// learning takes all threads.
     pub fn at(&self, pass: usize) -> &(dyn Compiled + 'a) {
         let Self { scene, film, settings, per_block, .. } = self;
         let rounds = self.rounds_for(pass);
@@ -167,10 +167,10 @@ impl<'a> Instrument<'a> {
         }
     }
 
-    /// `work` on tasks, each a block of the pass that `pass` names for it, on all threads, until there are none left or
-    /// `is_over`; the results in their order. Threads take the tasks in turn and finish what they took: what is done is the first
-    /// of them. At least one is, unless it is over before what that takes is learnt. This thread does `meanwhile` before it takes
-    /// any.
+    /// Runs `work` on tasks on all threads until none are left or `is_over`; the results in order of tasks. A task is a
+    /// block of the pass that `pass` returns. Threads take tasks in order and finish those they took, so the finished
+    /// ones are the first ones. At least one is finished, unless it is over before its pass is learnt. This thread runs
+    /// `meanwhile` before it takes any task.
     pub(super) fn work_until<T: Send>(
         &self,
         tasks: Range<usize>,
@@ -220,8 +220,8 @@ impl<'a> Instrument<'a> {
         })
     }
 
-    /// `see` all blocks of `passes`, each with an observer of its own that `make` makes, on all threads; `take` gets these in
-    /// order, and whether the pass ends with it.
+    /// Shows all blocks of `passes`, on all threads, each to an observer of its own from `make`. `take` gets these
+    /// observers in order, and whether the pass ends with the block.
     pub fn observe<T: BlockObserver + Send>(
         &self,
         passes: Range<usize>,
@@ -236,8 +236,8 @@ impl<'a> Instrument<'a> {
         self.in_order(passes, work, take)
     }
 
-    /// `work` on all blocks of `passes`, on all threads; `take` gets the results in order, and whether the
-    /// pass ends with it. The time that `work` took.
+    /// Runs `work` on all blocks of `passes`, on all threads. `take` gets the results in order, and whether the pass
+    /// ends with the block. Returns the time that `work` took.
     pub fn in_order<T: Send>(
         &self,
         passes: Range<usize>,

@@ -1,4 +1,4 @@
-//! What is known of an image once its samples are taken: its layers, in their order.
+//! The layers of an image, made once its samples are taken.
 
 use super::primary;
 use crate::{
@@ -29,7 +29,7 @@ pub(super) struct Known<'a> {
 }
 
 impl Known<'_> {
-    /// The channels of all `layers`; those that contributions are sorted into are planes in their order, from 1 on.
+    /// The channels of all `layers`. Layers that contributions are sorted into are planes from 1 on, in their order.
     pub(super) fn channels(&self, layers: &[Layer], plane: impl Fn(usize) -> Vec<Spectrum>) -> Vec<Channel> {
         let mut sorted = 0;
         let mut channels = Vec::new();

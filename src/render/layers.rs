@@ -1,9 +1,8 @@
-//! Layers that contributions are sorted into, beside the image that has all of them: what every group of emitters
-//! contributes, and as which component of radiance. An observer that is chosen only where such layers are requested sees
-//! where each contribution comes from.
+//! Layers that contributions are sorted into, beside the image with all of them: by group of emitters, and by component
+//! of radiance. An observer, used only where such layers are requested, sees where each contribution comes from.
 //!
-//! An image and such layers of it are planes of one array, the image first: what adds up, keeps and merges passes treats
-//! them as an image of that many more pixels.
+//! An image and these layers are planes of one array, the image first. Code that adds, keeps and merges passes treats
+//! them as one larger image.
 
 use crate::{
     film::{
@@ -33,14 +32,14 @@ use std::cell::Cell;
 /// Which plane contributions belong to, besides the image.
 #[derive(Clone, Debug)]
 pub(super) struct Sorter {
-    /// That of each component of each emitter's light; none where no layer has it.
+    /// The plane of each component of each emitter's light; none where no layer has it.
     of_emitters: Vec<[Option<usize>; Component::ALL.len()]>,
-    /// How many there are, the image among them.
+    /// Number of planes, including the image.
     planes: usize,
 }
 
 impl Sorter {
-    /// What `layers` of `scene` request; none where that is nothing. No two of them have the same light.
+    /// The sorter for `layers` of `scene`; none where no layer asks for it. No two layers have the same light.
     pub(super) fn new(scene: &Scene, layers: &[Layer]) -> Option<Self> {
         let part = |layer: &Layer| if let Content::Part(part) = layer.content { Some(part) } else { None };
         let parts: Vec<Part> = layers.iter().filter_map(part).collect();
@@ -80,7 +79,7 @@ impl Trail {
     #[inline]
     fn with(self, event: &Event<'_>) -> Self {
         let is_in_medium = matches!(event.interaction, Interaction::Medium(..));
-        // Where an interaction is forced, a second walk of the same observer begins.
+        // With forced interaction, a second walk of the same observer begins here.
         let is_first = event.arrival.edges == 1;
         Self {
             collisions: if is_first { 0 } else { self.collisions } + u32::from(is_in_medium),
@@ -90,7 +89,7 @@ impl Trail {
     }
 }
 
-/// A vertex of a light subpath in the cache: its emitter, and how many vertices up to there are in media.
+/// A light vertex in the cache: its emitter, and the number of vertices in media up to there.
 #[derive(Clone, Copy, Debug)]
 struct Kept {
     light: u32,
@@ -163,7 +162,7 @@ impl BlockObserver for Sorted<'_> {
     }
 }
 
-/// What light subpaths contribute to the film, and where they come from.
+/// Contributions of light subpaths to the film, by where they come from.
 struct LightPathObserver<'a> {
     film: &'a Film,
     sorter: &'a Sorter,
@@ -235,7 +234,7 @@ impl Observer for LightPathObserver<'_> {
     }
 }
 
-/// What camera subpaths contribute to each plane.
+/// Contributions of camera subpaths to each plane.
 struct CameraPathObserver<'a> {
     film: &'a Film,
     sorter: &'a Sorter,
@@ -248,7 +247,7 @@ struct CameraPathObserver<'a> {
     sums: Vec<Spectrum>,
     /// Of those before.
     values: Vec<(u32, Spectrum)>,
-    /// Where faults are, but for their cause.
+    /// A fault at this place, without its cause.
     place: Fault,
     faults: Vec<Fault>,
 }
@@ -266,7 +265,7 @@ impl CameraPathObserver<'_> {
         self.values.extend(self.sums.iter().enumerate().map(value));
     }
 
-    /// The emitter of what the strategy of `t` camera vertices contributes, and its component; none of light subpaths.
+    /// The emitter and the component of a contribution with `t` camera vertices; none for connections to the lens.
     fn origin(&self, t: u32, meeting: &Meeting<'_>) -> Option<(u32, Component)> {
         let Trail { is_first_in_medium, collisions, .. } = self.trail;
         let by_trail = |more| Component::of(is_first_in_medium, collisions + more);

@@ -87,8 +87,8 @@ pub fn render_to_precision<'a>(
     go_on(subject, film, settings, layers, &mut sums, &mut |reached, _| progress(reached))
 }
 
-/// Goes on from `sums`, which are of the same scene, film, layers and settings (but for the budget). `watch` sees the
-/// progress and the sums now and then.
+/// Resumes from `sums` of the same scene, film, layers and settings (except the budget). `watch` sees the progress and
+/// the sums now and then.
 pub fn go_on<'a>(
     subject: impl Into<Subject<'a>>,
     film: &Film,
@@ -180,7 +180,7 @@ fn finish(stage: &Stage<'_>, started: Instant, halves: &Halves, layers: &[Layer]
 /// Time between two estimates of the noise, which look at every pixel.
 const NOISE_EVERY: Duration = Duration::from_millis(100);
 
-/// Adds samples until the budget is spent. A preview that looks like `fog` is shown in place of what the estimator says.
+/// Adds samples until the budget is spent: of the estimator, or of the preview `fog`.
 fn accumulate(
     stage: &Stage<'_>,
     fog: Option<&FogSettings>,
@@ -194,7 +194,7 @@ fn accumulate(
     let queue = Queue::new(budget, sums, compiled.blocks().count());
     let (mut next, mut noted) = (sums.blocks.min(queue.end), Instant::now());
     let seen = Seen::new(&stage.instrument);
-    // However long that takes, or no time would be enough to go on.
+    // However long learning takes: otherwise short budgets would never make progress.
     if next < queue.end {
         stage.instrument.learn(queue.sample(next) as usize, &|| false);
     }
@@ -242,7 +242,7 @@ fn accumulate(
     Ok(())
 }
 
-/// The blocks that are to be rendered, numbered over the passes that are missing. Of the first of these, some may be done.
+/// The blocks to render, numbered over the missing passes. Some blocks of the first pass may be done.
 struct Queue {
     had: Samples,
     first: u64,
@@ -252,7 +252,7 @@ struct Queue {
 }
 
 impl Queue {
-    /// What `budget` wants besides what `sums` have; blocks of another pass are left out of them.
+    /// The samples that `budget` wants and `sums` lack. Drops unfinished blocks of another pass from `sums`.
     fn new(budget: &Budget, sums: &mut Sums, per_pass: usize) -> Self {
         let (had, wanted) = (sums.samples.clone(), budget.wanted());
         let passes = usize::try_from(had.missing_of(&wanted));
@@ -265,7 +265,7 @@ impl Queue {
         queue
     }
 
-    /// Behind the last task of the pass that `task` belongs to, and of as many behind it as makes `passes`.
+    /// The end of the tasks of `passes` passes, from the pass of `task` on.
     fn end_of(&self, task: usize, passes: usize) -> usize {
         (task / self.per_pass).saturating_add(passes).saturating_mul(self.per_pass)
     }

@@ -17,8 +17,8 @@ pub(super) struct Monitor<'a> {
 }
 
 impl Monitor<'_> {
-    /// `wanted` tasks (blocks of `per_pass` each pass), cut at the next mark after `done` passes: the time of a mark
-    /// must not hold work beyond it.
+    /// `wanted` tasks (`per_pass` blocks each pass), cut at the next mark after `done` passes: the time of a mark must
+    /// not include work beyond it.
     pub(super) fn limit_tasks(&self, wanted: usize, done: u64, per_pass: usize) -> usize {
         let next = self.marks.iter().find(|mark| **mark > done);
         next.map_or(wanted, |mark| wanted.min((*mark as usize).saturating_mul(per_pass)))

@@ -58,7 +58,7 @@ impl Pass {
         self.quantities.iter().any(|quantity| quantity.is_of_interaction())
     }
 
-    /// Traces as many primary rays per pixel as there were `passes`, or fewer once `is_over`, but one at least.
+    /// Traces one primary ray per pixel for each of `passes`, or fewer once `is_over`, but at least one.
     pub(super) fn run(&self, stage: &Stage<'_>, passes: u64, is_over: impl Fn() -> bool) -> Result<Seen> {
         let film = stage.instrument.film;
         let width = usize::from(self.alpha) + self.quantities.len();
@@ -91,7 +91,7 @@ impl Pass {
         Ok(Seen { alpha, planes: planes.collect() })
     }
 
-    /// Adds a primary ray of every pixel, that of a `pass` of so many, to `sums`.
+    /// Adds a primary ray of every pixel to `sums`, that of `pass`, one of `passes`.
     fn trace(&self, instrument: &Instrument<'_>, [pass, passes]: [u64; 2], sums: &mut [DVec3]) {
         let environment = instrument.scene.lights.environment.is_some();
         let width = sums.len() / instrument.film.len();
@@ -134,8 +134,8 @@ impl<'a, 's> View<'a, 's> {
         Self { scene, instrument, film, aperture, ray, hit, environment, step: 1.0 / (passes as f32).sqrt() }
     }
 
-    /// The probability that the ray interacts with something or hits a visible environment: what Mitsuba's
-    /// `volpath` determines by walking on. Emitters that are hidden do not count.
+    /// The probability that the ray interacts with something or hits a visible environment, which Mitsuba's `volpath`
+    /// finds by walking on. Hidden emitters do not count.
     fn alpha(&self, stream: &mut Stream) -> f32 {
         let hidden = self.instrument.settings.options.hide_emitters;
         if self.environment && !hidden {
@@ -182,7 +182,8 @@ impl<'a, 's> View<'a, 's> {
         }
     }
 
-    /// Where the side that is seen is black, as in Mitsuba that of the other, which a one-sided surface has too.
+    /// Albedo of the visible side. If this is black, that of the other side, as in Mitsuba: a one-sided surface has an
+    /// albedo from behind too.
     fn albedo(&self, point: &SurfacePoint) -> Spectrum {
         let albedo_of = |wi: Vec3| self.scene.at(point, |bsdf, uv| bsdf.albedo(uv, wi));
         let wi = point.shading.to_local(-self.ray.direction);
@@ -200,7 +201,7 @@ impl<'a, 's> View<'a, 's> {
         let (uu, uv, vv) = (du.dot(du), du.dot(dv), dv.dot(dv));
         let (mu, mv) = (du.dot(moved), dv.dot(moved));
         let change = vec2(vv * mu - uv * mv, uu * mv - uv * mu) / (uu * vv - uv * uv);
-        // A neighbour that runs along the surface, or a pole of the coordinates.
+        // Not finite: a neighbour that runs along the surface, or a pole of the coordinates.
         if change.is_finite() { change } else { Vec2::ZERO }
     }
 }

@@ -1,4 +1,4 @@
-//! What pixels see of emitters: where an estimate of the noise asks for it, each pixel once.
+//! What pixels see of emitters: looked up once per pixel, where an estimate of the noise asks for it.
 
 use super::{fog, instrument::Instrument};
 use crate::{
@@ -22,7 +22,7 @@ impl<'a, 's> Seen<'a, 's> {
         Self { instrument, known: RefCell::default() }
     }
 
-    /// The luminance of what `pixel` sees of emitters, not scattered but by smooth surfaces.
+    /// The luminance of emitters that `pixel` sees directly or by way of smooth surfaces.
     pub(super) fn of(&self, pixel: usize) -> f64 {
         *self.known.borrow_mut().entry(pixel).or_insert_with(|| self.look(pixel))
     }

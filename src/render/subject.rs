@@ -1,4 +1,5 @@
-//! What is rendered: a scene, or one that moves while the shutter is open, which every pass sees at a time of its own.
+//! What is rendered: a still scene, or one that moves while the shutter is open. Every pass sees a moving scene at a
+//! time of its own.
 
 use super::{image::Precision, instrument::Instrument};
 use crate::{
@@ -29,16 +30,16 @@ impl<'a> From<&'a Setup> for Subject<'a> {
     }
 }
 
-/// Who makes the passes of a render.
+/// Makes the passes of a render.
 pub struct Stage<'a> {
-    /// That of the scene halfway through the exposure, by which all that is learnt is learnt.
+    /// The instrument of the scene halfway through the exposure, on which everything is learnt.
     pub instrument: Instrument<'a>,
     moving: Option<&'a Setup>,
     layers: &'a [Layer],
 }
 
 impl<'a> Stage<'a> {
-    /// That of `subject` on `film`; with a `precision`, of a render to that.
+    /// The stage of `subject` on `film`, for a render to a `precision` if there is one.
     pub(super) fn new(
         subject: Subject<'a>,
         film: &'a Film,
@@ -55,18 +56,18 @@ impl<'a> Stage<'a> {
         Self { instrument, moving, layers }
     }
 
-    /// That of `subject` without layers.
+    /// The stage of `subject` without layers.
     pub fn of(subject: impl Into<Subject<'a>>, film: &'a Film, settings: &Settings) -> Self {
         Self::new(subject.into(), film, settings, &[], None)
     }
 
-    /// One whose scene stands still.
+    /// A stage whose scene stands still.
     pub(super) fn still(instrument: Instrument<'a>) -> Self {
         Self { instrument, moving: None, layers: &[] }
     }
 
-    /// Has `make` make `pass` and those behind it, as many as it is told at most, by an instrument that sees the scene as
-    /// they do.
+    /// Has `make` make `pass` and passes after it, by an instrument that sees the scene at their time. `make` gets the
+    /// most passes that it may make.
     pub fn show<T>(&self, pass: u64, make: impl FnOnce(&Instrument<'_>, usize) -> T) -> Result<T> {
         let moment = self.moving.and_then(|setup| setup.moment(self.instrument.settings.seed, pass));
         let Some(moment) = moment.transpose()? else { return Ok(make(&self.instrument, usize::MAX)) };

@@ -1,15 +1,15 @@
-//! Batches of tasks in turn: what came of one is taken in while all other threads are busy with the next. Were they to wait,
-//! sixteen threads would do the work of eleven.
+//! Batches of tasks in turn: the results of one are taken while all other threads are busy with the next. If they
+//! waited, sixteen threads would do the work of eleven.
 
 use super::instrument::{BLOCKS_AT_ONCE, Instrument};
 use std::{mem, ops::Range};
 
-/// Tasks of a batch for each thread, at least: the fewer, the longer threads wait for the last of them.
+/// Least tasks of a batch per thread: the fewer, the longer threads wait for the last of them.
 const TASKS_PER_THREAD: usize = 16;
 
 impl Instrument<'_> {
-    /// [`Self::work_until`], batch by batch; how many tasks are done. `take` gets the results in order, those of a batch
-    /// together with the number of the first, on this thread; those of the last batch before this returns.
+    /// [`Self::work_until`], batch by batch; returns the number of finished tasks. `take` gets the results in order, on
+    /// this thread: those of a batch together, with the number of the first.
     pub(super) fn work_in_turn<T: Send>(
         &self,
         tasks: Range<usize>,

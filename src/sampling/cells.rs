@@ -16,7 +16,7 @@ pub trait Keyed<const D: usize> {
 
 /// Parts of an extent between which cells may be divided where values differ.
 const PARTS: usize = 32;
-/// Of the variance of values, what a division must explain that is not made in the middle: values are noisy.
+/// Least part of the variance of values that a division off the middle must explain: values are noisy.
 const EXPLAINED: f64 = 0.05;
 
 /// A kd-tree with something in every leaf.
@@ -37,8 +37,8 @@ enum Cell<T> {
 }
 
 impl<const D: usize, T> Cells<D, T> {
-    /// No more than 2^`levels` cells, none where nothing is `keyed`, of which only such are divided that have twice so many `points`, as [`effective`] counts them, and in which `leaf` finds
-    /// what it holds.
+    /// At most 2^`levels` cells; none where nothing is `keyed`. A cell is divided if it has at least twice so many
+    /// `points`, as [`effective`] counts them. `leaf` makes the content of a cell from its items.
     pub fn learn<K: Keyed<D> + Send>(
         keyed: Vec<K>,
         points: f64,
@@ -68,7 +68,7 @@ impl<const D: usize, T> Cells<D, T> {
         self.grow(far, leaf);
     }
 
-    /// What all of them hold.
+    /// The contents of all leaves.
     pub fn leaves(&self) -> impl Iterator<Item = &T> {
         self.all.iter().filter_map(|cell| match cell {
             Cell::Leaf(leaf) => Some(leaf),
@@ -86,7 +86,7 @@ impl<const D: usize, T> Cells<D, T> {
         self.all.len()
     }
 
-    /// What cell `index` holds, or else the two cells that it is divided into; the first holds all others.
+    /// The content of cell `index`, or the two cells that it is divided into; the first cell is the root.
     pub fn cell(&self, index: usize) -> Result<&T, [u32; 2]> {
         match &self.all[index] {
             Cell::Split { beyond, .. } => Err([index as u32 + 1, *beyond]),
@@ -94,7 +94,7 @@ impl<const D: usize, T> Cells<D, T> {
         }
     }
 
-    /// What holds `key`.
+    /// The content of the cell around `key`.
     #[inline]
     pub fn at(&self, key: [f32; D]) -> Option<&T> {
         let mut index = 0;
@@ -110,13 +110,13 @@ impl<const D: usize, T> Cells<D, T> {
 }
 
 impl<const D: usize, T> Default for Cells<D, T> {
-    /// None at all.
+    /// No cells.
     fn default() -> Self {
         Self { all: Vec::new() }
     }
 }
 
-/// What the cells below one hold.
+/// The items of a cell, divided or not.
 enum Parts<K> {
     Whole(Vec<K>),
     Split { axis: usize, at: f32, parts: Box<[Self; 2]> },
@@ -133,8 +133,8 @@ fn divide<const D: usize, K: Keyed<D> + Send>(keyed: Vec<K>, points: f64, levels
     Parts::Split { axis, at, parts: Box::new([near, far]) }
 }
 
-/// The axis on which the keys lie furthest apart, and where the upper half of the weight begins, or beyond the lowest key if that
-/// has more than half; none where all keys are equal.
+/// The axis on which the keys lie furthest apart, and the key there at which the upper half of the weight begins. If
+/// the lowest key has more than half, it is the next one. None where all keys are equal.
 fn in_the_middle<const D: usize, K: Keyed<D>>(keyed: &[K]) -> Option<(usize, f32)> {
     let [low, high] = bounds(keyed);
     let extent = |axis: &usize| high[*axis] - low[*axis];
@@ -147,14 +147,14 @@ fn in_the_middle<const D: usize, K: Keyed<D>>(keyed: &[K]) -> Option<(usize, f32
         sum += f64::from(*weight);
         sum >= half
     })?;
-    // Equal keys lie on one side, all of them.
+    // Equal keys all lie on one side.
     let lowest = along[0].0;
     let (at, _) = *along.iter().find(|(key, _)| *key > lowest && *key >= middle)?;
     Some((axis, at))
 }
 
-/// The axis and the place where `keyed`, divided there, differ most in their values, each half with so many `points` at least;
-/// none where there are none or they hardly differ.
+/// The axis and the place where a division separates the values of `keyed` best, with at least so many `points` in each
+/// half; none where there are no values or they hardly differ.
 fn by_value<const D: usize, K: Keyed<D>>(keyed: &[K], points: f64) -> Option<(usize, f32)> {
     keyed.first()?.value()?;
     let [low, high] = bounds(keyed);

@@ -67,7 +67,8 @@ impl Discrete {
         (index, self.probability_precisely(index))
     }
 
-    /// The index as by [`Self::sample_precisely`], and how far into its section `u` is, in [0, 1): uniform, if `u` is.
+    /// The index as by [`Self::sample_precisely`], and the position of `u` within its section, in [0, 1): uniform if
+    /// `u` is.
     #[inline]
     pub fn sample_within(&self, u: f64) -> (usize, f32) {
         let (index, probability) = self.sample_precisely(u);

@@ -38,8 +38,8 @@ impl Grid {
         self.rows.total()
     }
 
-    /// A place in a cell, by two numbers, of which points that are spread evenly stay so within rows; cells of weight 0
-    /// never come.
+    /// A place in a cell, by two numbers; evenly spread points stay evenly spread within rows. Cells of weight 0 never
+    /// come.
     #[inline]
     pub fn sample(&self, stream: &mut Stream) -> Cell {
         let (row, down) = self.rows.sample_within(stream.uniform_precisely());

@@ -1,11 +1,11 @@
-//! Inverse distribution functions, for numbers whose order must be kept: u = (bits + 1/2) 2^-64, which is
-//! distinguished from 0 and from 1 alike, so that either tail is as fine as it should be.
+//! Inverse distribution functions, for numbers whose order must be kept. u = (bits + 1/2) 2^-64 is distinct from both 0
+//! and 1, so that either tail is as fine as it should be.
 
 use statrs::function::erf::erfc_inv;
 
 const SCALE: f64 = 1.0 / (1u128 << 64) as f64;
 
-/// The distance of u from the end of (0, 1) that is nearer, and whether that is 1.
+/// The distance of u from the nearer end of (0, 1), and whether this end is 1.
 fn nearer_end(bits: u64) -> (f64, bool) {
     let high = bits >> 63 == 1;
     let steps = if high { !bits } else { bits };

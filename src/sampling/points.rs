@@ -4,7 +4,7 @@
 use super::stream::mix;
 use sobol_burley::parts::{Int4, owen_scramble_int4_rev, owen_scramble_rev, sobol_int4_rev};
 
-/// Numbers of a stream that come from a point; what follows is independent. Measured: in `scenes/foggy_room.json` at 16
+/// Numbers of a stream that come from a point; later ones are independent. Measured: in `scenes/foggy_room.json` at 16
 /// samples per pixel, 4, 8, 16, 32 and 64 of them leave 0.99, 0.94, 0.90, 0.83 and 0.84 of the relMSE of independent
 /// numbers (each +- 0.05, the worst 2 % of pixels left out).
 pub(super) const DIMENSIONS: u32 = 32;
@@ -12,7 +12,7 @@ pub(super) const DIMENSIONS: u32 = 32;
 /// Points of one sequence; further ones belong to another, scrambled again.
 const LENGTH_LOG2: u32 = 16;
 
-/// A point, as far as its coordinates have not been drawn.
+/// A point, and how many of its coordinates are still to be drawn.
 #[derive(Clone, Debug)]
 pub(super) struct Point {
     /// Coordinates to come.
@@ -37,7 +37,7 @@ impl Point {
         Self { left: DIMENSIONS, index, key, four: [0; 4] }
     }
 
-    /// What is left of a point: these two coordinates, in units of 2^-32.
+    /// A point with only these two coordinates left, in units of 2^-32.
     pub(super) fn of(last: [u32; 2]) -> Self {
         Self { left: 2, four: [0, 0, last[0], last[1]], ..Self::NONE }
     }

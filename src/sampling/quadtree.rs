@@ -1,7 +1,7 @@
-//! Adaptive quadtrees: a density over the unit square, learnt from weighted points (after Mueller et al. 2017, Practical
-//! Path Guiding). Nodes of which many points tell are divided, however small they are: a few thousand points find an opening
-//! of a millionth of the square. Points are spread over the leaves around theirs: just beside them, where none fell, the next
-//! may be, and without a density worth the name it would count for thousands.
+//! Adaptive quadtrees: a density over the unit square, learnt from weighted points (after Mueller et al. 2017,
+//! Practical Path Guiding). Nodes with many points are divided, however small: a few thousand points find an opening of
+//! a millionth of the square. Points are spread over the leaves around theirs: the next one may fall just beside them,
+//! and would count for thousands if the density there were almost 0.
 
 use crate::math::{Vec2, vec2};
 
@@ -9,26 +9,27 @@ use crate::math::{Vec2, vec2};
 const TO_DIVIDE: f64 = 48.0;
 /// Levels below the root: the smallest nodes are 1e-6 of the square.
 const LEVELS: u32 = 10;
-/// Points that every node is taken to have had besides its own, evenly spread: where few fell, none is no proof.
+/// Prior: uniform points that every node has in addition to its own. Where few points fell, none is no proof.
 const UNSEEN: f64 = 2.0;
 /// Nodes with less of all the weight are not divided.
 const LEAST_SHARE: f64 = 1e-3;
 /// Levels of bins: there are 16 x 16.
 const BINS: u32 = 4;
-/// How many of them across, and down.
+/// Bins across, and down.
 const SIDE: usize = 1 << BINS;
-/// Points that divide a node of [`Basis::Quadtree`]. With bins at least, and by half the points, path tracing in rooms lit indirectly
-/// and in an attic has 0.8 of the error that it has by [`TO_DIVIDE`] alone.
+/// Points that divide a node of [`Basis::Quadtree`]. With at least the bins, and half the points, path tracing in rooms
+/// lit indirectly and in an attic has 0.8 of the error that it has with [`TO_DIVIDE`] alone.
 const TO_DIVIDE_BINS: f64 = 24.0;
 /// Parts into which a point is spread.
 const PARTS: usize = 4;
-/// How far they are spread (sizes of its leaf) where samples follow the tree alone. By 1 the relative error in a room with a small
-/// opening is 1.2 times as large, by 4 1.7 times; not at all 2 to 5 times, most of it in a hundredth of the pixels.
+/// How far parts are spread (sizes of the point's leaf) where samples follow the tree alone. In a room with a small
+/// opening the relative error is 1.2 times as large with 1, and 1.7 times with 4. Without spreading it is 2 to 5 times
+/// as large, most of it in a hundredth of the pixels.
 const ALONE: f32 = 2.0;
-/// The same where other densities are mixed with the tree's: by 1 path tracing in rooms lit indirectly or through a door has 0.9 of
-/// the error that it has by 0; by 1.4 it has no less than by 0 in the rooms.
+/// The same where other densities are mixed with the tree's. With 1, path tracing in rooms lit indirectly or through a
+/// door has 0.9 of the error that it has with 0; with 1.4 it has no less in the rooms than with 0.
 const MIXED: f32 = 1.0;
-/// Of all the weight, the coefficients of wavelets that are kept are more than this.
+/// Wavelet coefficients above this part of the weight are kept.
 const DETAIL: f64 = 0.01;
 
 /// A point of the unit square, and how much it counts.
@@ -40,7 +41,7 @@ pub struct Deposit {
     pub weight: f32,
 }
 
-/// As many equal weights would say as much: (sum w)^2 / sum w^2.
+/// Effective number of weights: (sum w)^2 / sum w^2 equal ones would say as much.
 pub fn effective(weights: impl Iterator<Item = f32>) -> f64 {
     let (sum, squares) = weights.fold((0.0, 0.0), |(sum, squares), weight| {
         let weight = f64::from(weight);
@@ -49,9 +50,9 @@ pub fn effective(weights: impl Iterator<Item = f32>) -> f64 {
     if squares > 0.0 { sum * sum / squares } else { 0.0 }
 }
 
-/// Limits the weights of `all` to a part of their sum; how many equal ones would say as much as those that remain.
+/// Limits the weights of `all` to a part of their sum; the effective number of the weights that remain.
 pub fn limit<T>(all: &mut [T], part: f64, weight: impl Fn(&mut T) -> &mut f32) -> f64 {
-    // What is taken away lowers the sum.
+    // Each limit lowers the sum, and so the next limit.
     for _ in 0..4 {
         let sum: f64 = all.iter_mut().map(|one| f64::from(*weight(one))).sum();
         let most = (part * sum) as f32;
@@ -89,14 +90,14 @@ impl Basis {
 #[derive(Clone, Debug)]
 pub struct Quadtree {
     nodes: Vec<Node>,
-    /// Row by row, so that densities are looked up without the levels above.
+    /// Row by row; they save the look-up of the levels above.
     bins: Vec<Bin>,
 }
 
 /// One of 16 x 16 equal parts of the square.
 #[derive(Clone, Copy, Debug)]
 struct Bin {
-    /// That of the node here, or of the leaf around.
+    /// Density of the node here, or of the leaf around.
     density: f32,
     /// Index of the node here; 0 where a leaf is.
     node: u32,
@@ -115,9 +116,9 @@ struct Node {
 struct Rule<F> {
     is_leaf: F,
     detail: f64,
-    /// All of it.
+    /// The weight of all points.
     weight: f64,
-    /// Of each point.
+    /// Parts of each point.
     parts: usize,
 }
 
@@ -127,7 +128,7 @@ impl Bin {
 }
 
 impl<F> Rule<F> {
-    /// Of all the weight; none of nothing.
+    /// The part of all weight; 0 of nothing.
     fn share(&self, weight: f64) -> f64 {
         if self.weight > 0.0 { weight / self.weight } else { 0.0 }
     }
@@ -148,17 +149,17 @@ impl Quadtree {
                 level == LEVELS || (level >= BINS && (count < TO_DIVIDE_BINS || share < LEAST_SHARE))
             }),
             Basis::Bins => Self::divided(deposits, |level, _, _| level == BINS, 0.0, 1),
-            // No coefficient is greater than the weight that it is of.
+            // No coefficient is greater than the weight of its node.
             Basis::Haar => {
                 Self::divided(deposits, |level, _, share| level == LEVELS || share <= DETAIL, DETAIL, 1)
             }
         }
     }
 
-    /// Divided twice: the leaves of the first time tell how far to spread `deposits`.
+    /// Divided twice: the first leaves determine how far `deposits` are spread.
     fn spread(deposits: &[Deposit], width: f32, is_leaf: impl Fn(u32, f64, f64) -> bool + Copy) -> Self {
         let tree = Self::divided(deposits.to_vec(), is_leaf, 0.0, 1);
-        // Multiples of the powers of the plastic number, less what is whole: pairs of them are even (Roberts 2018).
+        // Fractional parts of multiples of powers of the plastic number: their pairs are spread evenly (Roberts 2018).
         let even = |index: usize| {
             [0.754_877_666, 0.569_840_291].map(|step: f64| (0.5 + index as f64 * step).fract() as f32)
         };
@@ -172,8 +173,8 @@ impl Quadtree {
         Self::divided(deposits.iter().enumerate().flat_map(parts).collect(), is_leaf, 0.0, PARTS)
     }
 
-    /// A node `is_leaf` if so many levels are above it, so many points tell of it, and it has this share of the weight; and where
-    /// no coefficient is more than the share `detail`. Each point came in so many `parts`.
+    /// `is_leaf` decides for a node by the levels above it, its points, and its share of the weight. It is a leaf also
+    /// where no coefficient exceeds the share `detail`. Each point came in so many `parts`.
     fn divided(
         deposits: Vec<Deposit>,
         is_leaf: impl Fn(u32, f64, f64) -> bool,
@@ -188,7 +189,8 @@ impl Quadtree {
         tree
     }
 
-    /// The node of `deposits`, whose coordinates are those within it, so many levels below the root; none where it remains a leaf.
+    /// The node of `deposits`, so many levels below the root; none where it remains a leaf. Coordinates are those
+    /// within the node.
     fn grow(
         &mut self,
         deposits: Vec<Deposit>,
@@ -254,7 +256,7 @@ impl Quadtree {
         }
     }
 
-    /// Density at a point of the unit square, relative to an even one; never 0.
+    /// Density at a point of the unit square, relative to a uniform one; never 0.
     #[inline]
     pub fn density(&self, at: Vec2) -> f32 {
         let scaled = SIDE as f32 * at;
@@ -266,7 +268,7 @@ impl Quadtree {
         self.descend(scaled - vec2(x as f32, y as f32), bin, LEVELS).density
     }
 
-    /// So many levels below `from`, whose coordinates `at` is in.
+    /// Descends so many levels below `from`; `at` is in the coordinates of `from`.
     #[inline]
     fn descend(&self, mut at: Vec2, from: Bin, levels: u32) -> Bin {
         let mut below = from;
@@ -294,7 +296,7 @@ fn total(deposits: &[Deposit]) -> f64 {
     deposits.iter().map(|deposit| f64::from(deposit.weight)).sum()
 }
 
-/// Those of the four quarters, with the coordinates that they have there.
+/// The deposits of the four quarters, in the coordinates of each.
 fn divide(deposits: Vec<Deposit>) -> [Vec<Deposit>; 4] {
     let mut quarters: [Vec<Deposit>; 4] = Default::default();
     for Deposit { mut at, weight } in deposits {
@@ -304,8 +306,8 @@ fn divide(deposits: Vec<Deposit>) -> [Vec<Deposit>; 4] {
     quarters
 }
 
-/// Where a point beside the unit square is taken to be, which is at most two away: of a sphere, x ends at the poles, and y goes
-/// around.
+/// Maps a point beside the unit square (at most two away) into it. The square is a sphere's: x ends at the poles, and y
+/// goes around.
 fn inside(at: Vec2) -> Vec2 {
     let x = at.x.abs();
     vec2(x.min(2.0 - x), at.y.rem_euclid(1.0)).clamp(Vec2::ZERO, Vec2::splat(1.0 - f32::EPSILON))
@@ -319,7 +321,7 @@ fn quarter_of(at: &mut Vec2) -> usize {
     2 * usize::from(upper) + usize::from(right)
 }
 
-/// True if `u`, in [0, 1), falls into the second of two parts; it is then where in its part it fell.
+/// True if `u`, in [0, 1), falls into the second of two parts; `u` becomes its position within its part.
 #[inline]
 fn choose(u: &mut f32, first: f32, second: f32) -> bool {
     let share = first / (first + second);

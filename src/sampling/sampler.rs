@@ -7,7 +7,7 @@ use super::{Stream, stream::Purpose};
 pub enum Sampler {
     /// Independent random numbers.
     Independent,
-    /// The first of every stream are the coordinates of a point of an Owen-scrambled Sobol sequence: those of
+    /// The first numbers of every stream are the coordinates of a point of an Owen-scrambled Sobol sequence. Those of
     /// consecutive samples are spread evenly.
     #[default]
     Sobol,
@@ -22,10 +22,10 @@ impl Sampler {
         Self::NAMES.iter().find(|(_, sampler)| *sampler == self).map_or("", |(name, _)| name)
     }
 
-    /// The stream of walk `walk` of those that `index` has in pass `pass`, `walks` of them, for `purpose`.
+    /// The stream of walk `walk`, of the `walks` that `index` has in pass `pass`, for `purpose`.
     ///
-    /// Walks of one index are spread evenly together, those of all passes of even number and those of all passes of odd
-    /// number: the two halves of an image are independent, so that their difference shows how far it may be off.
+    /// Walks of one index are spread evenly together, those of even passes apart from those of odd passes. The two
+    /// halves of an image are therefore independent, and their difference shows its error.
     #[inline]
     pub fn stream(self, seed: u64, index: u64, pass: u64, walk: u64, walks: u64, purpose: Purpose) -> Stream {
         match self {

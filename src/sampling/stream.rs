@@ -37,14 +37,14 @@ impl Stream {
         Self { generator, point: Point::NONE }
     }
 
-    /// The same four, with the numbers that come first spread evenly over the samples of one index: the coordinates of
-    /// point `sample` of a sequence scrambled by (`seed`, `index`, `purpose`).
+    /// The stream of the same four, whose first numbers are spread evenly over the samples of one index: they are the
+    /// coordinates of point `sample` of a sequence scrambled by (`seed`, `index`, `purpose`).
     pub fn sobol(seed: u64, index: u64, sample: u64, purpose: Purpose) -> Self {
         let point = Point::new(key(seed, [index, purpose as u64]), sample);
         Self { point, ..Self::new(seed, index, sample, purpose) }
     }
 
-    /// The stream whose first two numbers are these, both in [0, 1); those that come then depend on them alone.
+    /// The stream with these first two numbers, both in [0, 1); later ones depend on them alone.
     pub fn of(first: Vec2) -> Self {
         let bits = first.to_array().map(|x| (f64::from(x) * (1u64 << 32) as f64) as u32);
         let [index, sample] = bits.map(u64::from);
@@ -146,7 +146,8 @@ impl Stream {
 /// Steps of 24 bits.
 const SCALE: f32 = 1.0 / (1u64 << 24) as f32;
 
-/// One number of many. The turn of `seed` is for the first part: without it the two could change places.
+/// Combines many numbers into one. The rotation of `seed` distinguishes it from the first part: without it the two
+/// could change places.
 #[inline]
 fn key<const N: usize>(seed: u64, parts: [u64; N]) -> u64 {
     parts.iter().fold(mix(seed.rotate_left(32)), |key, part| mix(key ^ mix(*part)))

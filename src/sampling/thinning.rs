@@ -1,9 +1,9 @@
-//! Few of many things, in proportion to their weights.
+//! A selection of many things, in proportion to their weights.
 
-/// Keeps every so many of them, by the sum of their weights: of equal weights as evenly as can be.
+/// Keeps one item per step of the sum of weights: items of equal weight are kept at even intervals.
 pub struct Thinning {
     step: f32,
-    /// Over `step`, since the last that was kept.
+    /// Sum of weights over `step`, since the last item that was kept.
     sum: f64,
 }
 
@@ -13,7 +13,7 @@ impl Thinning {
         Self { step, sum: 0.5 }
     }
 
-    /// What the next one stands for if it is kept: its `weight`, or more if that is less than the step.
+    /// The weight that the next item stands for if it is kept: its `weight`, or the step if that is greater.
     pub fn keeps(&mut self, weight: f32) -> Option<f32> {
         self.sum += f64::from(weight / self.step);
         (self.sum >= 1.0).then(|| {

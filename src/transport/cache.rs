@@ -1,13 +1,13 @@
-//! The light subpaths that the camera subpaths of a block are connected to. Connecting every camera vertex to a fixed number
-//! of their vertices, drawn uniformly, bounds the cost of a pixel sample linearly in its length; connecting it to all of one
-//! light subpath is the estimator of LW96.
+//! The light subpaths that the camera subpaths of a block connect to. Each camera vertex connects to a fixed number of
+//! light vertices, drawn uniformly: the cost of a pixel sample is linear in its length. Connecting to all vertices of
+//! one light subpath is the estimator of LW96.
 
 use super::{mis::MisSums, vertex::Vertex};
 use crate::sampling::Stream;
 
-/// Vertices that a cache of draws holds of a hero channel, at most. Where some walks have millions, in thick white media, an even
-/// choice of them stands for all (algorithm R: Vitter 1985, "Random Sampling with a Reservoir"). 16 times as many as are aimed at on
-/// average, so that it is rare; some 50 MB.
+/// Most vertices of a hero channel in a cache that is drawn from; some 50 MB. In thick white media some walks have
+/// millions of vertices: a uniform choice then stands for all (algorithm R: Vitter 1985, "Random Sampling with a
+/// Reservoir"). This is rare, for the limit is 16 times the average aimed at.
 const MOST: usize = 1 << 18;
 
 /// Vertices of light subpaths, those of one hero channel together.
@@ -20,7 +20,7 @@ pub struct LightCache<S: MisSums> {
 #[derive(Clone, Debug)]
 struct Pool<S: MisSums> {
     vertices: Vec<Vertex<S>>,
-    /// Those that `vertices` stand for.
+    /// Number of vertices that `vertices` stand for.
     count: usize,
     /// Light subpaths that could have left vertices here, times the probability that a vertex was kept.
     walks: f32,
@@ -41,10 +41,10 @@ pub struct Partners<'a, S: MisSums> {
     first: usize,
     /// How many of them each camera vertex is connected to.
     pub count: usize,
-    /// True if they are drawn; else each has its turn.
+    /// True if they are drawn at random; else taken in order.
     is_drawn: bool,
-    /// The factor that makes the sum over these connections an estimate of that over all vertices of one light subpath:
-    /// all vertices / (connections x walks) where they are drawn.
+    /// Factor from the sum over these connections to an estimate of the sum over all vertices of one light subpath: all
+    /// vertices / (connections x walks) where they are drawn.
     pub scale: f32,
 }
 
@@ -79,7 +79,7 @@ impl<S: MisSums> LightCache<S> {
         self.pools[hero].walks += keep;
     }
 
-    /// Keeps a vertex, as one of all where `keeps_all`; says where it lies.
+    /// Keeps a vertex, always if `keeps_all`; its index in the pool, none if it was dropped.
     #[inline]
     pub fn push(
         &mut self,
@@ -121,7 +121,7 @@ impl<S: MisSums> LightCache<S> {
         Partners { vertices, first, count: vertices.len(), ..Partners::NONE }
     }
 
-    /// Vertices that it stands for.
+    /// Number of vertices that the cache stands for.
     pub fn len(&self) -> usize {
         self.pools.iter().map(|pool| pool.count).sum()
     }

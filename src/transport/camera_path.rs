@@ -30,13 +30,13 @@ pub(super) struct CameraPath<'a, P: Profile, R> {
     pub(super) estimator: &'a Estimator<'a, P>,
     light: Partners<'a, P::MisSums>,
     hero: usize,
-    /// The last vertex that the walk left, from which next-event estimation would have been done.
+    /// The last vertex that the walk left: the one that next-event estimation would connect from.
     previous: Vec3,
-    /// Density of the direction that it left in.
+    /// Density of the primary ray's direction.
     pdf_fwd: f32,
-    /// Where it collided first, if equiangular sampling may have.
+    /// The first collision, if equiangular sampling could have placed it.
     pub(super) first: Option<FirstCollision>,
-    /// A strategy connects across a segment of the walk so far.
+    /// True if some strategy connects across a segment of the walk so far.
     pub(super) is_linked: bool,
     pub(super) observer: R,
 }
@@ -179,7 +179,7 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
         }
     }
 
-    /// What else there is along the primary ray, once the walk is done: it comes to the evenly spread numbers first.
+    /// Equiangular sampling along the primary ray. It follows the walk, which draws the evenly spread numbers.
     #[inline]
     pub(super) fn beside_walk(&mut self, departure: &Departure<P::MisSums>, stream: &mut Stream) {
         if P::MEDIA && self.estimator.counts.equiangular > 0.0 && self.estimator.max_edges >= 2 {
@@ -192,7 +192,7 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
         self.observer
     }
 
-    /// s = 0: the walk has reached an emitter; `found` is the point of it, if it emits this way.
+    /// s = 0: the walk has reached an emitter; `found` returns the emitter point, none if it does not emit this way.
     #[inline]
     fn emission(&mut self, subpath: &Subpath<P::MisSums>, found: impl FnOnce() -> Option<EmitterSample>) {
         if self.estimator.counts.emitter_hit <= 0.0 || subpath.edges <= self.estimator.skipped {
@@ -211,7 +211,7 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
         self.observer.stop(StrategyKind::EmitterHit, 0, subpath.edges + 1);
     }
 
-    /// s = 0 on a shape. Whether the walk goes on beyond it makes no difference: what the shape emits is added to what
+    /// s = 0 on a shape, whether or not the walk goes on beyond it: the shape's emission adds to the radiance that
     /// comes through it.
     #[inline]
     fn surface_emission(
@@ -244,7 +244,7 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
         }
     }
 
-    /// s = 0 in a medium that is the emitter `light`, at the distance that was `sampled`, and its density (1/m).
+    /// s = 0 in a medium that is the emitter `light`; `sampled` is a distance (m) and its density (1/m).
     fn emission_along(
         &mut self,
         departure: &Departure<P::MisSums>,

@@ -53,8 +53,9 @@ pub(super) fn vertex_end<P: Profile>(
     })
 }
 
-/// The end at an emitter point picked for a connection of one light vertex, s = 1, to `reference` in `medium`, in unit
-/// direction `towards`. In units of the density of s = 1, a light subpath starts so as densely as it does over `sample`'s.
+/// The end at an emitter point picked by next-event estimation (s = 1), which connects to `reference` in `medium`, in
+/// unit direction `towards`. `pdf_fwd` is the density of a light subpath's start over that of `sample`: weights here
+/// are in units of the density of s = 1.
 #[inline]
 pub(super) fn emitter_end<P: Profile>(
     estimator: &Estimator<'_, P>,
@@ -135,9 +136,9 @@ pub(super) fn connect<P: Profile>(
     connect_along::<P>(scene, &Span { ray, cut, distance_squared, hidden }, a, b, strategy, stream)
 }
 
-/// The same along a given span that starts at `a`: for ends at infinity.
+/// The same along a given span from `a`: for ends at infinity.
 ///
-/// LW96 eq. 10 over eq. 11, times eq. 14: each end holds what its own walk contributed over its density.
+/// LW96 eq. 10 over eq. 11, times eq. 14: each end holds the contribution of its own walk over its density.
 #[inline(always)]
 pub(super) fn connect_along<P: Profile>(
     scene: &Scene,

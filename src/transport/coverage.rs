@@ -1,7 +1,7 @@
-//! Which paths of a scene a set of strategies can make: those that it cannot are black in its images, not noisy.
+//! Which paths of a scene a set of strategies can make. The others are missing from its images, not noisy.
 //!
-//! What decides is how a path scatters, not where: an emitter of some kind, then vertices that scatter by a Dirac lobe
-//! or not. Five vertices show all there is to see of the ends and of two neighbours between them.
+//! This depends on how a path scatters, not where: on the kind of emitter, and on which vertices scatter by a Dirac
+//! lobe. Five vertices cover both ends and two neighbours between them.
 
 use super::{Options, Strategies, manifold::Manifold, strategy::StrategyKind};
 use crate::{
@@ -12,10 +12,10 @@ use crate::{
     scene::Scene,
 };
 
-/// Most vertices between emitter and lens that are looked at.
+/// Most vertices between emitter and lens that are examined.
 const VERTICES: u32 = 5;
 
-/// What bounds the paths of an image.
+/// Limits on the paths of an image.
 #[derive(Clone, Copy, Debug)]
 pub struct Paths {
     /// Most segments; none for no limit.
@@ -33,24 +33,24 @@ impl From<&Options> for Paths {
     }
 }
 
-/// What of a scene decides which strategies can make its paths.
+/// The properties of a scene that decide which strategies can make its paths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traits {
-    /// Every kind of emitters that differ in this, with the names of their plugins.
+    /// The emitters, grouped by equal traits, with the names of their plugins.
     emitters: Vec<(EmitterTraits, Vec<&'static str>)>,
     /// What scatters by Dirac lobes, in words; none where nothing does.
     smooth: Option<&'static str>,
     /// Something scatters otherwise.
     rough: bool,
-    /// Light of lamps is followed over some smooth shapes, see [`Manifold`].
+    /// [`Manifold`] connects to lamps over some smooth shapes.
     bent: bool,
     /// Most segments of a path.
     max_depth: u32,
-    /// Fewest segments of one that counts.
+    /// Fewest segments of a path that counts.
     min_depth: u32,
 }
 
-/// What of an emitter decides which strategies can start or end at it.
+/// The properties of an emitter that decide which strategies can start or end at it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct EmitterTraits {
     /// Camera subpaths can hit it.
@@ -77,7 +77,7 @@ impl Traits {
                 hittable: emitter.is_hittable(),
                 connectible: emitter.is_connectible(),
                 seen: seen && !hidden && emitter.is_hittable(),
-                // Parallel rays see one direction of what is at infinity, which no light subpath starts in.
+                // Parallel rays see an emitter at infinity in one direction; no light subpath starts in exactly that.
                 lens,
                 to_lens: lens
                     && emitter.is_hittable()
@@ -117,7 +117,7 @@ impl Traits {
         kinds
     }
 
-    /// A path that `all` can make and `some` cannot, in words; none where there is no such.
+    /// A path that `all` can make and `some` cannot, in words; none if there is no such path.
     pub fn missing(&self, some: Strategies, all: Strategies) -> Option<String> {
         let mut missing = self.paths().filter(|path| path.is_made_by(all) && !path.is_made_by(some));
         missing.next().map(|path| path.in_words())
@@ -142,7 +142,7 @@ impl Traits {
             let real = move |pattern: &Vec<bool>| {
                 pattern.iter().all(|d| if *d { self.smooth.is_some() } else { self.rough })
             };
-            // Of emitters in direct view alone there are paths without vertices between.
+            // Only emitters in direct view have paths without vertices between.
             let lit = move |(emitter, _): &&(EmitterTraits, Vec<_>)| count > 0 || emitter.seen;
             patterns.filter(real).flat_map(move |pattern| {
                 self.emitters.iter().filter(lit).map(move |kind| self.path(kind, &pattern))
@@ -173,7 +173,7 @@ struct Path<'a> {
     names: &'a [&'static str],
     /// What scatters by Dirac lobes, in words.
     smooth: &'static str,
-    /// Of every vertex from the emitter to the lens whether it scatters by a Dirac lobe.
+    /// For each vertex from the emitter to the lens: whether it scatters by a Dirac lobe.
     dirac: Vec<bool>,
 }
 
@@ -182,7 +182,8 @@ impl Path<'_> {
         makers(self.emitter, &self.dirac).iter().any(|kind| set.has(*kind))
     }
 
-    /// True of light that smooth surfaces send on, from where it may be followed back.
+    /// True for light of a lamp that no walk can hit, by way of smooth surfaces to a vertex that [`Manifold`] may
+    /// connect from.
     fn is_bent(&self) -> bool {
         !self.emitter.hittable
             && self.emitter.connectible
@@ -227,7 +228,7 @@ fn add(emitters: &mut Vec<(EmitterTraits, Vec<&'static str>)>, traits: EmitterTr
     }
 }
 
-/// What these surfaces of Dirac lobes are; none where there are none.
+/// The kinds of these smooth surfaces, in words; none where there are none.
 fn in_words_smooth<'a>(bsdfs: impl Iterator<Item = &'a Bsdf>) -> Option<&'static str> {
     let (glass, mirrors): (Vec<_>, Vec<_>) = bsdfs.partition(|bsdf| bsdf.transmits());
     match (glass.is_empty(), mirrors.is_empty()) {
@@ -243,7 +244,7 @@ fn in_words_smooth<'a>(bsdfs: impl Iterator<Item = &'a Bsdf>) -> Option<&'static
 pub struct Unreached {
     /// Which, in words.
     pub light: String,
-    /// How much of it bidirectional path tracing does.
+    /// How much of it bidirectional path tracing reaches.
     pub by_bdpt: Share,
 }
 
@@ -263,7 +264,7 @@ impl Share {
         if is_reached { Self::All } else { Self::None }
     }
 
-    /// Of this and other paths together.
+    /// The share of this and other paths together.
     fn with(self, other: Self) -> Self {
         if self == other { self } else { Self::Some }
     }
@@ -283,7 +284,7 @@ pub fn is_complete(scene: &Scene, options: &Options, set: Strategies) -> bool {
     Traits::of(scene, options.into(), true).missing(set, options.strategies).is_none()
 }
 
-/// Light of `scene` that an estimator does not reach; the preview of no strategies is no estimate.
+/// Light of `scene` that an estimator does not reach; nothing for a preview without strategies, which is no estimate.
 pub fn unreached(scene: &Scene, options: &Options) -> Vec<Unreached> {
     match options.strategies {
         Strategies::NONE => Vec::new(),
@@ -291,8 +292,7 @@ pub fn unreached(scene: &Scene, options: &Options) -> Vec<Unreached> {
     }
 }
 
-/// What must be known of an estimator's images of `scene`: what is not in them, what is biased, and where error bars
-/// mean little.
+/// Caveats about an estimator's images of `scene`: missing light, bias, and unreliable error bars.
 pub fn notes(scene: &Scene, options: &Options) -> Vec<String> {
     let Strategies { emitter_hit, next_event, lens, .. } = options.strategies;
     let missing = unreached(scene, options).into_iter();
@@ -312,7 +312,7 @@ pub fn notes(scene: &Scene, options: &Options) -> Vec<String> {
     notes
 }
 
-/// True if the mean of an estimator's images of `scene` is the truth as far as any integrator's is.
+/// True if the mean of an estimator's images of `scene` is as close to the truth as any integrator's.
 pub fn is_trustworthy(scene: &Scene, options: &Options) -> bool {
     let missing = unreached(scene, options).len();
     let other_notes = notes(scene, options).len() - missing;

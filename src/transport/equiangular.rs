@@ -1,24 +1,25 @@
-//! Equiangular sampling (Kulla and Fajardo 2012) as one more strategy of the balance heuristic: a distance along the
-//! primary ray that is likely to be near an emitter, then next-event estimation from there. In thin media it finds the glow
-//! around lamps that few flights end in.
+//! Equiangular sampling (Kulla and Fajardo 2012) as one more strategy of the balance heuristic. It samples a distance
+//! along the primary ray that is likely to be near an emitter, then does next-event estimation from there. In thin
+//! media it finds the glow around lamps, where few flights end.
 //!
 //! # Its density
-//! It makes paths y, x, o of two segments: an emitter's point, a point of a medium, the lens. The primary ray from o has
-//! the density p_o (1/sr) that camera subpaths give it. An emitter j is chosen with probability P_j, whatever the ray;
-//! the distance t of x has the density e_j(t) of [`crate::scene::lights::Pivot`] (1/m), which knows the centre of the
-//! emitter and nothing of the medium or of where the ray ends: x fails behind a surface. Then y is a point of the same
-//! emitter as next-event estimation picks it from x, so that no path can come from another emitter's distance:
+//! It makes paths y, x, o of two segments: an emitter's point, a point of a medium, the lens. The primary ray from o
+//! has the density p_o (1/sr) that camera subpaths give it. An emitter j is chosen with probability P_j, whatever the
+//! ray. The distance t of x has the density e_j(t) of [`crate::scene::lights::Pivot`] (1/m). This density depends on
+//! the centre of the emitter, not on the medium or on where the ray ends: a sample with x behind a surface fails. Then
+//! y is a point of the same emitter, picked from x as by next-event estimation, so that no path can come from another
+//! emitter's distance:
 //!
 //! ```text
 //! p_e  = p_o e_j(t) / t^2  P_j  p(y | x, j)
 //! p_1  = p_o sigma_t(x) T(o, x) / t^2  Q_j  p(y | x, j)      next-event estimation at the end of a flight
 //! p_e / p_1 = e_j(t) P_j / (sigma_t(x) T(o, x) Q_j)
 //! ```
-//! No channel samples it better than another: p_e is the same for all of them.
+//! p_e is the same for all channels.
 //!
 //! # As an addend of the others' weights
-//! Only strategies that make paths of two segments share paths with it, so that no running sum carries it; each adds it as
-//! it weighs such a path, in units of its own density by hero h ([`End::beside`]):
+//! It shares paths only with strategies that make paths of two segments, so no running sum carries it. Each of these
+//! adds p_e when it weighs such a path, in units of its own density by hero h ([`End::beside`]):
 //!
 //! | strategy | n_e p_e over p^h |
 //! |---|---|
@@ -26,13 +27,14 @@
 //! | s = 1, at x | n_e e_j P_j / Q_j over (sigma_t T)^h |
 //! | s = 2, x seen by the lens | n_e e_j P_j / Q_j times (connect / start) p_o / t^2, times 1/p>^h of x |
 //!
-//! Its own vertex is in units of p_e: as if the flight had the density e_j, so that nothing underflows where T does. The
-//! flight's density over that, sigma_t T / e_j, is what `pdf_over_hero` of a vertex is elsewhere.
+//! Its own vertex is in units of p_e, as if the flight had the density e_j: nothing underflows where T does. The
+//! vertex's `pdf_over_hero` is the flight's density over that, sigma_t T / e_j.
 //!
 //! # What it is worth
-//! By the time to equal error of all strategies, independent samples: 1.4 to 2 where mean free paths are many times the size
-//! of what is seen, 0.9 to 1.0 in dense fog, where light subpaths seen by the lens find that light too. From later vertices
-//! than the lens it costs 1.3 to 1.5 times the time and gains less, everywhere; it is left out there.
+//! Gain in time to equal error, with all strategies and independent samples: 1.4 to 2 where mean free paths are many
+//! times the size of what is seen; 0.9 to 1.0 in dense fog, where light subpaths connected to the lens find that light
+//! too. From vertices after the lens it takes 1.3 to 1.5 times the time and gains less everywhere, so it is left out
+//! there.
 
 use super::{
     camera_path::CameraPath,
@@ -61,8 +63,8 @@ use crate::{
     shape::Ray,
 };
 
-/// True if some path of `scene` can be made so: there are media, emitters at some place, and a lens, as parallel rays are
-/// left out. A point of a ray has no one medium where several overlap.
+/// True if some path of `scene` can be made this way: there are media, emitters at finite positions, and a sensor whose
+/// rays are not parallel. Overlapping media are excluded: there a point of a ray has no single medium.
 pub fn applies(scene: &Scene) -> bool {
     let media = scene.media.iter().any(|medium| medium.bound().sigma_t != Spectrum::ZERO);
     media && scene.media_map.overlaps.is_none() && scene.lights.has_pivots() && !scene.sensor.is_parallel()
@@ -81,7 +83,8 @@ pub struct FirstCollision {
 }
 
 impl FirstCollision {
-    /// That at `vertex`, from `lens` in a direction of density `pdf`; none on a surface or further on.
+    /// The collision at `vertex`, reached from `lens` in a direction of density `pdf`; none on a surface or after the
+    /// first segment.
     #[inline]
     pub fn of<S: MisSums>(vertex: &Vertex<S>, lens: Vec3, pdf: f32) -> Option<Self> {
         let Interaction::Medium(position, _) = vertex.interaction else { return None };
@@ -96,7 +99,7 @@ impl FirstCollision {
 }
 
 impl<P: Profile> Estimator<'_, P> {
-    /// n_e P_j / Q_j e_j(t): in units of next-event estimation, but for the density of the flight.
+    /// n_e P_j / Q_j e_j(t): the density in units of next-event estimation, without the density of the flight.
     #[inline]
     fn pivoted(&self, light: u32, position: Vec3, direction: Vec3, distance: f32) -> f32 {
         self.scene.lights.pivot(light, position, self.sky).map_or(0.0, |(pivot, over_connect)| {
@@ -111,7 +114,7 @@ impl<P: Profile> Estimator<'_, P> {
         P::Channels::splat(self.pivoted(light, position, direction, distance) * inv_flight)
     }
 
-    /// The same in units of the light subpath from `start` whose first vertex is `end`, as the lens sees it.
+    /// The same in units of a connection to the lens, by the light subpath from `start` with the first vertex `end`.
     #[inline]
     pub fn equiangular_seen(
         &self,
@@ -141,8 +144,8 @@ impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
         self.observer.stop(StrategyKind::Equiangular, 1, 2);
     }
 
-    /// A vertex on the ray of `departure`, its density that of the distance instead of the flight's, and a point of the
-    /// emitter that it was chosen for; none where it lies in no medium or behind a surface.
+    /// A vertex on the ray of `departure`, with the density of the distance in place of the flight's, and a point of
+    /// the emitter chosen; none where the vertex lies in no medium or behind a surface.
     pub(super) fn pick_equiangular(
         &self,
         departure: &Departure<P::MisSums>,

@@ -1,4 +1,4 @@
-//! What an estimator knows of its scene, of its strategies, and of what was learnt.
+//! An estimator: its scene, its strategies, and the learnt data that it uses.
 
 use super::{
     cache::{LightCache, Partners},
@@ -37,9 +37,9 @@ pub struct Estimator<'a, P: Profile> {
     pub(super) scene: &'a Scene,
     pub(super) counts: Counts,
     pub(super) heuristic: Heuristic,
-    /// When walks end, as was asked,
+    /// When walks end, as requested,
     pub(super) survival: Survival,
-    /// and as they do.
+    /// and as actually done.
     pub(super) roulette: Roulette,
     pub(super) connections_per_vertex: u32,
     pub(super) connections: Connections,
@@ -47,27 +47,27 @@ pub struct Estimator<'a, P: Profile> {
     pub(super) keep: f32,
     /// Most segments of a path.
     pub(super) max_edges: u32,
-    /// Paths of so many segments, and shorter ones, do not count.
+    /// Paths of this many segments or fewer do not count.
     pub(super) skipped: u32,
-    /// So many lengths of paths do.
+    /// Number of path lengths that count.
     pub(super) counted: u32,
     pub(super) hide_emitters: bool,
     pub(super) forced_interaction: bool,
-    /// Which starts of light subpaths reach the image; none if they start as their emitters would have it.
+    /// Learnt starts of light subpaths; none if each starts by its emitter's own density.
     pub(super) starts: Option<Arc<Starts>>,
-    /// Connections by way of smooth surfaces; none where there is nothing for them.
+    /// Connections by way of smooth surfaces; none where the scene has no use for them.
     pub(super) manifold: Option<Manifold>,
     /// How the environment is found.
     pub(super) sky: Sky,
-    /// What walks follow.
+    /// The guide that walks follow.
     pub(super) guide: Option<Arc<Guide>>,
-    /// What camera subpaths end in.
+    /// The radiance that camera subpaths end in (previews).
     pub(super) ending: Option<Arc<Ending>>,
     pub(super) profile: std::marker::PhantomData<P>,
 }
 
 impl<P: Profile> Estimator<'_, P> {
-    /// True if a path counts that is made of subpaths of so many segments together, and one more that connects them.
+    /// True if a path counts whose subpaths have this many segments together, the connecting segment apart.
     #[inline]
     pub(super) fn joins(&self, edges: u32) -> bool {
         edges.wrapping_sub(self.skipped) < self.counted
@@ -86,14 +86,14 @@ impl<P: Profile> Estimator<'_, P> {
         Strategy { kind, count, heuristic: self.heuristic }
     }
 
-    /// Density of a light subpath's start at `sample` along the segment from there to `other`, in unit `direction`.
+    /// Density with which a light subpath starts at `sample` towards `other`, in unit `direction`.
     #[inline]
     pub(super) fn pdf_start(&self, sample: &EmitterSample, other: Vec3, direction: Vec3) -> f32 {
         let unlearnt = Densities { point: sample.pdf_start, direction: sample.pdf_direction };
         self.learnt(|| Start::towards(sample.light, &sample.point, other, direction), unlearnt).both()
     }
 
-    /// Densities of a start, which are `unlearnt` without what was learnt.
+    /// Densities of a start; `unlearnt` where no starts were learnt.
     #[inline]
     pub(super) fn learnt(&self, start: impl FnOnce() -> Start, unlearnt: Densities) -> Densities {
         match &self.starts {
@@ -107,12 +107,12 @@ impl<P: Profile> Estimator<'_, P> {
         self.survival
     }
 
-    /// The starts that light subpaths were given.
+    /// The learnt starts of light subpaths.
     pub fn starts(&self) -> Option<&Starts> {
         self.starts.as_deref()
     }
 
-    /// True if light subpaths have something to do.
+    /// True if a strategy needs light subpaths.
     pub fn needs_light_walks(&self) -> bool {
         self.counts.connection > 0.0 || self.counts.lens > 0.0
     }
@@ -122,8 +122,8 @@ impl<P: Profile> Estimator<'_, P> {
         self.counts.lens > 0.0 && self.counts.emitter_hit <= 0.0 && self.skipped == 0
     }
 
-    /// The light vertices for a camera subpath of channel `hero`, which may have light subpath number `walk` of the cache for
-    /// itself.
+    /// The light vertices that a camera subpath of channel `hero` connects to: with [`Connections::All`] those of light
+    /// subpath number `walk` of the cache.
     #[inline]
     pub(super) fn partners<'c>(
         &self,

@@ -1,4 +1,4 @@
-//! What observers see of walks: where they go, where they arrive, and what is there.
+//! What observers see of walks: departures, arrivals and the vertices reached.
 
 use super::{interaction::Interaction, profiles::Everything};
 use crate::{
@@ -11,17 +11,17 @@ use crate::{
 };
 use std::f32::consts::FRAC_1_PI;
 
-/// The density of a dull BSDF in the direction of a mirror, or straight on, is less than so many times that of one that is even.
+/// A BSDF is dull if its pdf in the mirror and straight-through directions is below this many times 1/pi.
 const GLOSSY: f32 = 4.0;
 
-/// How a walk goes on from its start or a vertex.
+/// A walk as it leaves its start or a vertex.
 #[derive(Clone, Copy, Debug)]
 pub struct Leg {
     /// Where it was.
     pub position: Vec3,
     /// Where it goes to, unit.
     pub direction: Vec3,
-    /// The medium that it is then in.
+    /// The medium that it enters.
     pub medium: MediumIndex,
     /// Segments so far.
     pub edges: u32,
@@ -31,7 +31,7 @@ pub struct Leg {
     pub density: f32,
     /// Contribution over density so far.
     pub throughput: Spectrum,
-    /// How often walks that end by the albedo come so far, over how often this one does.
+    /// Probability that a walk with roulette by the albedo gets this far, over that of this walk.
     pub by_albedo: f32,
 }
 
@@ -47,7 +47,7 @@ pub struct Arrival {
     /// Density of the point by the hero channel: per volume in media (1/m^3), per area on surfaces (1/m^2), per solid
     /// angle at infinity (1/sr).
     pub density: f32,
-    /// Contribution over density of all before its own scattering.
+    /// Contribution over density, without the scattering here.
     pub throughput: Spectrum,
 }
 
@@ -68,12 +68,12 @@ impl Event<'_> {
         self.interaction.position()
     }
 
-    /// True if something of its scattering is not Dirac.
+    /// True if some of its scattering is not Dirac.
     pub fn is_connectible(&self, scene: &Scene) -> bool {
         self.interaction.is_connectible(scene)
     }
 
-    /// True in media, and on surfaces that look about the same from everywhere: their mean tells something.
+    /// True in media, and on surfaces that look about the same from everywhere: there a mean radiance is meaningful.
     pub fn is_dull(&self, scene: &Scene) -> bool {
         let Interaction::Surface(point) = self.interaction else { return true };
         let (incoming, normal) = (self.arrival.incoming, point.shading.normal);
@@ -87,7 +87,7 @@ impl Event<'_> {
         self.is_connectible(scene) && pdf(mirrored) < most && pdf(-incoming) < most
     }
 
-    /// Where it is looked up.
+    /// The place at which radiance is looked up.
     #[inline]
     pub fn place(&self, scene: &Scene) -> Place {
         let mean_cosine = match self.interaction {

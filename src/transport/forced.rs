@@ -3,10 +3,10 @@
 //! happen to collide.
 //!
 //! Forcing makes collisions in thin media denser by 1 / (1 - T), T the transmittance of all media that the ray crosses.
-//! The balance heuristic accounts for it: that factor multiplies the density of every strategy that samples
-//! the first segment from the camera, as all but the connections to the lens do. It depends on the primary
-//! ray alone, so that it is the same function of the path in every strategy, and the weights sum to one. On
-//! surfaces and where media emit the factor is left at 1: the weights there are not optimal, but correct.
+//! The balance heuristic accounts for this factor: it multiplies the density of every strategy that samples the first
+//! segment from the camera, that is, of all but connections to the lens. The factor depends on the primary ray alone:
+//! it is the same function of the path in every strategy, and the weights sum to one. On surfaces and where media emit
+//! it is left at 1: the weights there are not optimal, but correct.
 
 use super::{
     cache::Partners,
@@ -62,17 +62,16 @@ pub(super) fn sample<P: Profile, R: Observer>(
     camera.into_observer()
 }
 
-/// The factor by which forcing raises the density of the first vertex from the camera in a medium, per
-/// channel, where primary ray `ray` sees it.
+/// Factor per channel by which forcing raises the density of the first collision along the primary ray `ray`.
 pub(super) fn gain<P: Profile>(estimator: &Estimator<'_, P>, ray: Ray) -> P::Channels {
     let Estimator { scene, hide_emitters, .. } = *estimator;
     gain_of(segment::sure_depth::<P>(Segment::along(scene, ray, scene.media_map.sensor, hide_emitters)))
 }
 
-/// No gain is taken to be more than this: thinner media are seen by camera subpaths alone as it is.
+/// Largest gain: in thinner media the weights already leave nearly everything to camera subpaths.
 const MOST: f32 = 1e4;
 
-/// 1 / (1 - exp(-depth)); where no medium is certain to be crossed, nothing is known and nothing gained.
+/// 1 / (1 - exp(-depth)); 1 where no medium is certain to be crossed.
 fn gain_of<L: Channels>(depth: L) -> L {
     let channel = |depth: f32| if depth > 0.0 { (-1.0 / (-depth).exp_m1()).min(MOST) } else { 1.0 };
     L::from_spectrum(depth.to_spectrum().map(channel))

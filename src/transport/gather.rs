@@ -1,6 +1,7 @@
-//! Previews by a first pass: camera subpaths as of path tracing, which end where they scatter for the second time (`gather`, P03T
-//! sec. 5.3) or first (`first-pass`, sec. 4.3.3), in what the first pass has of that place. Mirrors and glass scatter in one direction
-//! alone, and do not count; at glossy surfaces they go on, and so does what a mirror reflects where a surface is dull too.
+//! Previews that look up a first pass: path tracing whose camera subpaths end at their second scattering (`gather`,
+//! P03T sec. 5.3) or at their first (`first-pass`, sec. 4.3.3), with the radiance that the first pass has there.
+//! Scattering by mirrors and glass does not count. Glossy surfaces end no path. Where a dull surface also has a mirror
+//! lobe, the mirrored path goes on.
 
 use super::{
     cache::Partners,

@@ -27,7 +27,7 @@ pub struct Scattering {
 pub enum Interaction {
     /// A surface.
     Surface(SurfacePoint),
-    /// The medium, by a collision at this point, and its properties there.
+    /// A collision at this point, and the properties of the medium there.
     Medium(Vec3, MediumProperties),
 }
 
@@ -62,8 +62,8 @@ impl Interaction {
         }
     }
 
-    /// Scattering between unit `incoming`, where a walk by `transport` came from, and unit `outgoing`; densities without survival
-    /// and without a guide.
+    /// Scattering of a walk by `transport` from unit `incoming`, which points back along the walk, to unit `outgoing`.
+    /// Densities are without survival and without a guide.
     ///
     /// LW96 eq. 10: g, without the cosine that the density of the vertex contains.
     #[inline]
@@ -99,7 +99,7 @@ impl Interaction {
         }
     }
 
-    /// True if something of its scattering is not Dirac.
+    /// True if some of its scattering is not Dirac.
     #[inline]
     pub fn is_connectible(&self, scene: &Scene) -> bool {
         match self {
@@ -121,8 +121,8 @@ impl Interaction {
     }
 }
 
-/// The density of scattering back over that of scattering from unit `incoming` to unit `outgoing`: what flakes show of
-/// themselves to one over what they show to the other, else 1.
+/// Density of scattering from unit `outgoing` back to unit `incoming` over the density forwards: for flakes the ratio
+/// of the areas that they show in both directions, else 1.
 #[inline]
 pub(super) fn back<M: MediaProfile>(medium: &Medium, incoming: Vec3, outgoing: Vec3) -> f32 {
     if M::FLAKES { medium.area::<M>(incoming) / medium.area::<M>(outgoing) } else { 1.0 }

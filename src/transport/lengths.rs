@@ -1,4 +1,4 @@
-//! Where late roulette is worth it: lengths of a few walks tell, alike for all images of a scene.
+//! Where late roulette pays, judged by the lengths of a few walks: the same for all images of a scene.
 
 use super::{
     cache::Partners,
@@ -16,20 +16,20 @@ use crate::{
 };
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Walks that are measured; of so many segments at most, each and on average.
+/// Number of walks measured; most segments of each; and most on average if late roulette is to pay.
 const WALKS: u64 = 512;
 const LONGEST: u32 = 256;
 const LONG: f64 = 32.0;
-/// So many times the segments are worth it. Measured by `pt`, variance x instructions gain 1.0 to 6 (glass, metal, fog or
-/// smoke over ground, under a sky or a lamp) where they are 1.3 times as many or fewer, and 0.8 to 1.2 at 1.4 to 1.5
-/// (`drifting_mist`, `countryside`, `reflector`). Rooms are at 1.7 to 2.8.
+/// Late roulette pays if walks have at most this many times the segments. Measured by `pt`, gains in variance x
+/// instructions: 1.0 to 6 where segments are at most 1.3 times as many (glass, metal, fog or smoke over ground, under a
+/// sky or a lamp); 0.8 to 1.2 at 1.4 to 1.5 (`drifting_mist`, `countryside`, `reflector`). Rooms are at 1.7 to 2.8.
 const STRETCH: f64 = 4.0 / 3.0;
 
 impl Roulette {
-    /// That of `estimator`, whose camera subpaths run alone.
+    /// The roulette of `estimator`, whose camera subpaths run alone.
     pub fn alone<P: Profile>(estimator: &mut Estimator<'_, P>) -> Self {
         let asked = estimator.roulette;
-        // In fog without end walks had better end, see `walk::thinned`.
+        // In endless fog walks must not get longer, see `walk::thinned`.
         let may_be_late = !estimator.scene.is_endless();
         let is_late = may_be_late
             && (asked == Self::AtOnce(Survival::FourthRoot) || Lengths::of(estimator).are_worth_it());
@@ -41,7 +41,7 @@ impl Roulette {
 #[derive(Clone, Copy, Debug, Default)]
 struct Lengths {
     late: f64,
-    /// Those of them that they would have had by the albedo.
+    /// Segments that they would have had with roulette by the albedo.
     usual: f64,
 }
 
@@ -90,7 +90,7 @@ impl Observer for Lengths {
     }
 }
 
-/// True if it is worth it that roulette is late, as walks of so many segments then have only so many as `usual` by the albedo.
+/// True if late roulette pays: with it walks have `late` segments, by the albedo `usual` ones.
 pub fn is_worth_it(late: f64, usual: f64) -> bool {
     late < LONG && late <= STRETCH * usual
 }

@@ -77,7 +77,7 @@ pub(super) fn begin<P: Profile>(estimator: &Estimator<'_, P>, stream: &mut Strea
     (!astray).then_some(start)
 }
 
-/// Leaves the emitter. Before it there is only the camera subpath that hits it.
+/// Leaves the emitter. The only strategy before that is s = 0: a camera subpath that hits the emitter.
 pub(super) fn depart<P: Profile>(
     estimator: &Estimator<'_, P>,
     start: &EmissionSample,
@@ -177,7 +177,8 @@ impl<'a, P: Profile, R: Observer> LightPath<'a, P, R> {
         self.observer.stop(StrategyKind::Lens, s, 1);
     }
 
-    /// t = 1: a vertex as the sensor sees it through a point of its aperture, and where on the film (pixels).
+    /// t = 1: connects a vertex to the sensor through a point of its aperture; the film position (pixels) and the
+    /// contribution.
     #[inline]
     pub(super) fn connect_to_lens(
         &self,
@@ -209,7 +210,8 @@ impl<'a, P: Profile, R: Observer> LightPath<'a, P, R> {
         Some((seen.film, contribution))
     }
 
-    /// s = 1, t = 1: the emitter itself as the sensor sees it, where a camera subpath could hit it but none does.
+    /// s = 1, t = 1: connects the emitter point itself to the sensor, if camera subpaths could hit it but s = 0 does
+    /// not run.
     pub(super) fn connect_start_to_lens(
         &self,
         aperture: Vec2,
@@ -283,7 +285,7 @@ fn start_end<P: Profile>(
     let leaving = origin.unwrap_or(start.ray.origin);
     Some(End {
         origin,
-        // Never the far end of a connection: the lens is.
+        // This is never the far end of a connection; the lens is.
         lift: Lift::NONE,
         medium: estimator.scene.emission_medium(start.light, leaving, towards),
         within: false,

@@ -1,5 +1,5 @@
-//! Weights of strategies (LW96 eq. 14), O(1) per connection. The files of the folder are the heuristics; `sums` is what they
-//! have in common.
+//! Weights of strategies (LW96 eq. 14), O(1) per connection. Each file of the folder is a heuristic; `sums` is their
+//! common interface.
 
 mod balance;
 mod by_kind;
@@ -50,8 +50,8 @@ pub struct End<S: MisSums> {
     pub pdf_over_hero: S::Channels,
     /// See [`super::vertex::Vertex::others_before`].
     pub others_before: S,
-    /// A strategy that makes the same path without either walk as it is, in units of the one at hand. Only of the first end
-    /// of a connection, and only where there are media.
+    /// One more strategy that makes the same path, but by neither walk, in units of the strategy at hand (see
+    /// `equiangular`). Only the first end of a connection has it, and only where there are media.
     pub beside: Option<S>,
 }
 
@@ -68,7 +68,7 @@ impl<S: MisSums> End<S> {
 /// A strategy as the weights use it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strategy {
-    /// Of which kind it is.
+    /// Its kind.
     pub kind: StrategyKind,
     /// Expected samples.
     pub count: f32,
@@ -86,7 +86,7 @@ pub(super) struct Weight {
 }
 
 impl Strategy {
-    /// n p^c of its own over n p^h, where the walks have `pdf_over_hero` at both ends. Equiangular sampling has no flight.
+    /// Its own n p^c over n p^h; `pdf_over_hero` is the product of both ends'. Equiangular sampling has no flight.
     #[inline]
     pub(super) fn own<P: Profile>(&self, pdf_over_hero: P::Channels) -> P::Channels {
         if P::MEDIA && self.kind == StrategyKind::Equiangular {
@@ -96,7 +96,7 @@ impl Strategy {
         }
     }
 
-    /// The weight of this strategy where `others` are all other strategies in units of its own n p^h, and `own` its n p^c.
+    /// The weight of this strategy. `others` are all other strategies and `own` its n p^c, both in units of its n p^h.
     ///
     /// LW96 eq. 14.
     #[inline]
@@ -128,8 +128,7 @@ pub(super) fn connection_weight<P: Profile>(
 }
 
 /// The weight of a strategy that runs alone, times the number of channels: only the channels share the path.
-/// `pdf_over_hero` is the product of both ends'. The weight among all strategies is that of
-/// [`Strategy::weight`] over this one.
+/// `pdf_over_hero` is the product of both ends'. The share among all strategies is [`Strategy::weight`] over this.
 #[inline]
 pub(super) fn weight_alone<L: Channels>(pdf_over_hero: L) -> f32 {
     L::COUNT as f32 / pdf_over_hero.sum()

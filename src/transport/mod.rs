@@ -12,8 +12,8 @@
 //! g(x)    = sigma_t albedo phase   in a medium
 //!           bsdf |cos| |cos'|      on a surface
 //! ```
-//! (LW96 eq. 10, with the sigma_s that it leaves out of g in a medium). L_e is the radiance emitted, in an emissive medium
-//! the radiance gained per metre, of a point light its intensity; W is the pixel's filter over the film.
+//! (LW96 eq. 10, with the sigma_s that it leaves out of g in a medium). L_e is the emitted radiance; in an emissive
+//! medium it is the radiance emitted per metre, for a point light the intensity. W is the pixel's filter over the film.
 //!
 //! # The sum over (s, t)
 //! A light subpath makes x_0 .. x_s-1, a camera subpath x_k .. x_s (t = k + 1 - s vertices), and a segment
@@ -34,13 +34,13 @@
 //! | s = 0 | the camera subpath hits an emitter | [`camera_path::CameraPath::emitter_hit`] |
 //! | s = 1, t >= 2 | next-event estimation: a fresh point of an emitter | [`camera_path::CameraPath::join_emitter`] |
 //! | s >= 2, t >= 2 | connection with a light vertex drawn from a cache, or with all of one walk ([`Connections`]) | [`camera_path::CameraPath::connect_with`] |
-//! | s >= 2, t >= 2 over Dirac lobes | the way of a lamp's light over a smooth shape is solved for | [`camera_path::CameraPath::connect_bent`] |
-//! | s >= 1, t = 1 | the light subpath is seen by the lens, through any pixel | [`light_path::LightPath::connect_to_lens`] |
+//! | s >= 2, t >= 2 over Dirac lobes | the path of a lamp's light over a smooth shape is solved for | [`camera_path::CameraPath::connect_bent`] |
+//! | s >= 1, t = 1 | the light subpath is connected to the lens, through any pixel | [`light_path::LightPath::connect_to_lens`] |
 //! | s = 1, t = 2 in media | a distance along the primary ray, likely near an emitter, then as s = 1 | [`equiangular`] |
 //!
-//! A pixel sample is one camera subpath; the light subpaths of a block of pixels fill the cache, or each belongs to one pixel. `pt` and
-//! `lt` are the same with strategies left out ([`Strategies`]), other heuristics than eq. 14 sum n p
-//! otherwise ([`MisSums`]), and the flight densities are part of p in all of them.
+//! A pixel sample is one camera subpath. The light subpaths of a block of pixels fill the cache, or each belongs to one
+//! pixel. `pt` and `lt` leave out strategies ([`Strategies`]). Heuristics other than eq. 14 sum n p differently
+//! ([`MisSums`]). In all of them p contains the flight densities.
 //!
 //! # From equation to function
 //! | equation | function |
@@ -120,14 +120,14 @@ use manifold::Manifold;
 use observer::{Meeting, Observer};
 use roulette::Roulette;
 
-/// Vertices that the cache of a block should hold at most, on average: it has to fit the processor's caches.
+/// Most vertices in the cache of a block, on average: it has to fit the processor's caches.
 const CACHE_VERTICES: f32 = 16_384.0;
-/// Light subpaths that measure how many vertices a light subpath leaves.
+/// Number of light subpaths that measure the vertices per light subpath.
 const PILOT_WALKS: u64 = 2_048;
 
 impl<'a, P: Profile> Estimator<'a, P> {
-    /// Prepares to render `scene` with `walks_per_pass` light subpaths for each sample of all pixels together and
-    /// `walks_per_block` of them behind one cache, which begin and go on by what was `learnt`; `seed` is that of its pilot walks.
+    /// Prepares to render `scene`. There are `walks_per_pass` light subpaths for one sample of all pixels together, and
+    /// `walks_per_block` of them fill one cache. Walks start and scatter as `learnt`; `seed` is for the pilot walks.
     pub fn new(
         scene: &'a Scene,
         options: Options,
@@ -176,7 +176,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             // Every strategy takes one sample of each pair of subpaths, as LW96 eq. 14 has it.
             Connections::All => (estimator.keep, estimator.counts.connection) = (1.0, 1.0),
         }
-        // Pilots record the probability at every vertex, of the walks that may follow a guide.
+        // Pilots record the survival probability at every vertex; their walks may follow a guide.
         let is_recorded = P::GUIDED && !options.algorithm.ends_in_first_pass();
         if lit && !is_recorded && !estimator.needs_light_walks() {
             estimator.roulette = Roulette::alone(&mut estimator);
@@ -184,9 +184,9 @@ impl<'a, P: Profile> Estimator<'a, P> {
         estimator
     }
 
-    /// Measures how many vertices a light subpath leaves: n of a connection is draws over vertices per walk,
-    /// however many of them are kept. The weights need a constant that does not depend on the very walks they
-    /// weight, hence a measurement beforehand.
+    /// Measures the vertices per light subpath: n of a connection is draws over vertices per walk, however many
+    /// vertices are kept. The weights need a constant that does not depend on the walks they weight, so it is measured
+    /// beforehand.
     fn plan_connections(&mut self, per_vertex: u32, seed: u64, walks_per_block: u64) {
         self.keep = 1.0;
         let mut vertices = 0;
@@ -217,15 +217,15 @@ impl<'a, P: Profile> Estimator<'a, P> {
         light_path::trace(self, cache, observer, hero, stream);
     }
 
-    /// What remains of radiance along a primary ray (its `t_max` is its length); 0 where something blocks it.
+    /// Transmittance along a primary ray (its `t_max` is its length); 0 where a surface blocks it.
     pub fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum {
         let medium = self.scene.media_map.sensor;
         let passed = transmittance::<P>(self.scene, primary, 0.0, medium, self.hide_emitters, stream);
         passed.map_or(Spectrum::ZERO, |passed| passed.transmittance)
     }
 
-    /// Where a primary ray interacts first, as channel 0 samples it: by a collision, or at a surface that it does not pass; none
-    /// where it leaves the scene.
+    /// The first interaction of a primary ray, sampled by channel 0: a collision, or a surface that it does not pass;
+    /// none where it leaves the scene.
     #[cold]
     pub fn first_interaction(&self, primary: Ray, stream: &mut Stream) -> Option<Interaction> {
         let medium = self.scene.media_map.sensor;

@@ -19,25 +19,25 @@ pub enum Meeting<'a> {
     Met(Arrival, &'a EmitterSample),
     /// s = 1: a point of an emitter, picked for the last vertex.
     Emitter(&'a EmitterSample),
-    /// s >= 2: a point of an emitter, in unit direction `towards` by way of smooth surfaces, of which `last` is a point of the last.
+    /// s >= 2: a point of an emitter, connected by way of smooth surfaces.
     Bent {
-        /// From the last vertex.
+        /// Unit direction from the last vertex to the first smooth surface.
         towards: Vec3,
-        /// Where the light comes to the smooth surfaces.
+        /// The point on the last smooth surface, where the light arrives.
         last: Vec3,
-        /// Where it comes from.
+        /// The point of the emitter.
         sample: &'a EmitterSample,
     },
     /// s >= 2: a vertex of a light subpath, and its place in the pool of the hero channel.
     Light(usize, Event<'a>),
     /// t = 1: the lens, through this film position (pixels).
     Lens(Vec2),
-    /// Equiangular sampling: a vertex on the primary ray, which is none of the walk, and a point of an emitter.
+    /// Equiangular sampling: a vertex on the primary ray that does not belong to the walk, and a point of an emitter.
     Pivot(Leg, Event<'a>, &'a EmitterSample),
 }
 
 impl Meeting<'_> {
-    /// The kind of the strategy of `s` light and `t` camera vertices that met so.
+    /// The kind of the strategy of `s` light and `t` camera vertices with this meeting.
     #[inline]
     pub fn kind(&self, s: u32, t: u32) -> StrategyKind {
         match self {
@@ -58,9 +58,9 @@ pub struct Contribution {
     pub alone: Spectrum,
     /// The weight that it would have then.
     pub weight_alone: f32,
-    /// What remains of radiance along the connecting segment; 1 where there is none.
+    /// Transmittance of the connecting segment; 1 where there is none.
     pub transmittance: Spectrum,
-    /// The same without chance, as the weights take it.
+    /// The same without random estimates, as the weights use it.
     pub expected: Spectrum,
     /// See [`super::MisSums::shares`].
     pub shares: [f32; StrategyKind::ALL.len()],
@@ -90,7 +90,7 @@ impl Div<f32> for Contribution {
     }
 }
 
-/// Sees the walks of one pixel sample, or those of light, and all that they contribute.
+/// Sees the walks of one pixel sample, or light subpaths, and all their contributions.
 pub trait Observer {
     /// The strategy of `s` light and `t` camera vertices, the lens among these, contributes a path; none
     /// where it is blocked or nothing scatters along it. The sum of all values is the estimate.
@@ -102,7 +102,7 @@ pub trait Observer {
         true
     }
 
-    /// The preview `gather` adds what was learnt.
+    /// The preview `gather` adds learnt radiance.
     #[inline]
     fn gather(&mut self, _value: Spectrum) {}
 
@@ -126,11 +126,11 @@ pub trait Observer {
     #[inline]
     fn arrive(&mut self, _event: Event<'_>) {}
 
-    /// A camera subpath left the scene: the `incoming` of its arrival at infinity, reversed, is the direction it left in.
+    /// A camera subpath left the scene, opposite to `incoming` of this arrival at infinity.
     #[inline]
     fn escape(&mut self, _arrival: &Arrival) {}
 
-    /// The last vertex of the light subpath at hand was put into the cache at `place`, whatever was there.
+    /// The last vertex of the current light subpath was put into the cache at `place`, over any vertex there.
     #[inline]
     fn keep(&mut self, _place: usize) {}
 }

@@ -1,4 +1,4 @@
-//! What a compiled estimator contains: see `profiles` for those that there are.
+//! What a compiled estimator contains; `profiles` lists the profiles.
 
 use super::mis::MisSums;
 use crate::medium::MediaProfile;

@@ -72,7 +72,7 @@ profile! {
     heterogeneous: false, infinite: true, emissive: false
 }
 
-/// All there is, weighed by the heuristic that `S` sums for.
+/// Every feature, weighted by the heuristic of the sums `S`.
 #[derive(Clone, Copy, Debug)]
 pub struct Everything<S = Balance<Spectrum>>(PhantomData<S>);
 
@@ -158,8 +158,7 @@ impl ProfileName {
     }
 
     /// The profile that runs where this one and `heuristic` are requested: only the balance heuristic is compiled for
-    /// all of them. To compare run times of heuristics, run the balance heuristic on the profile of the
-    /// others too.
+    /// every profile. To compare run times of heuristics, run the balance heuristic on [`Everything`] too.
     pub fn weighing(self, heuristic: Heuristic) -> Self {
         if heuristic == Heuristic::Balance { self } else { Self::Everything }
     }

@@ -1,21 +1,21 @@
-//! When walks end: by Russian roulette at every vertex, with a probability to go on that is a function of the vertex alone,
-//! so that it can be part of all densities (LW96 eq. 8 and 9).
+//! When walks end: by Russian roulette at every vertex. The survival probability is a function of the vertex alone, so
+//! that all densities can contain it (LW96 eq. 8 and 9).
 //!
 //! # Where camera subpaths run alone
-//! The roulette of a vertex is drawn at the end of the flight that leaves it, after the emitter that this flight may have
-//! hit is counted: a walk that ends has seen the sky once more, for the price of one flight. Strategies s = 0 and s = 1 make
-//! a path by the same walk up to the vertex next to the emitter. Both have passed the roulettes of all vertices before it,
-//! and neither that of this vertex: so no roulette is part of the ratio of their densities, and it multiplies the throughput
-//! and the density of what follows only ([`super::vertex::Subpath::survive`]). Light subpaths could not tell the last vertex
-//! of such a walk from others.
+//! The roulette of a vertex is drawn at the end of the flight that leaves it, after any emitter that this flight hit is
+//! counted: a walk that ends has seen the sky once more, for the price of one flight. Strategies s = 0 and s = 1 make a
+//! path by the same walk up to the vertex next to the emitter. Both have passed the roulettes of all vertices before
+//! this one, and neither has passed its own. So roulette cancels in the ratio of their densities; it multiplies only
+//! the throughput and the density of what follows ([`super::vertex::Subpath::survive`]). Light subpaths could not tell
+//! the last vertex of such a walk from others.
 //!
 //! # How long walks are
-//! To go on with the albedo as probability keeps throughputs even, and is right in closed rooms, where there is always more
-//! of the walk to pay for. Under a sky most walks soon leave the scene: to end them by roulette saves little time, and
-//! brings most of the noise that is left. There, where camera subpaths run alone, walks put roulette off. Such a walk owes
-//! the product of all albedos so far over that of its probabilities to go on, and goes on with the eighth root of what it
-//! owes: soon it owes the seventh power of the albedo and no less, so that in white clouds it is no longer than with the
-//! albedo. [`super::lengths`] says where that is worth it.
+//! Survival by the albedo keeps throughputs even. It is right in closed rooms, where walks would go on and on. Under a
+//! sky most walks soon leave the scene: roulette saves little time there, and causes most of the remaining noise. If
+//! camera subpaths run alone there, walks put roulette off. Such a walk owes the product of all albedos so far over
+//! that of its survival probabilities, and survives with the eighth root of what it owes. This debt settles at the
+//! seventh power of the albedo, and survival at the albedo: in white clouds the walk is no longer than by the albedo.
+//! [`super::lengths`] says where this pays.
 
 use crate::settings::options::Survival;
 
@@ -24,16 +24,16 @@ use crate::settings::options::Survival;
 pub enum Roulette {
     /// At a vertex, by its albedo.
     AtOnce(Survival),
-    /// Of camera subpaths that run alone: at the end of the flight from it, by all albedos so far.
+    /// For camera subpaths that run alone: at the end of the next flight, by all albedos so far.
     Late,
 }
 
-/// What is still to be drawn for a walk.
+/// The roulette that a walk has put off.
 #[derive(Clone, Copy, Debug)]
 pub struct Pending {
-    /// The probability to go on at the end of the flight.
+    /// Survival probability at the end of the flight.
     pub survival: f32,
-    /// The product of all albedos over that of all probabilities to go on, this one among them.
+    /// The product of all albedos over that of all survival probabilities, including this one.
     owed: f32,
 }
 
@@ -41,7 +41,7 @@ impl Pending {
     /// Nothing.
     pub const NONE: Self = Self { survival: 1.0, owed: 1.0 };
 
-    /// How often walks that end by the albedo come so far, over how often this one does.
+    /// Probability that a walk with roulette by the albedo gets this far, over that of this walk.
     #[inline]
     pub fn by_albedo(self) -> f32 {
         self.survival * self.owed
@@ -49,7 +49,7 @@ impl Pending {
 }
 
 impl Roulette {
-    /// The probability to go on at once from a vertex of `albedo`, and what is pending behind it, where `before` was.
+    /// The survival probability at a vertex of `albedo`, and the roulette pending after it, where `before` was pending.
     #[inline]
     pub fn at(self, albedo: f32, before: Pending) -> (f32, Pending) {
         match self {
@@ -65,8 +65,8 @@ impl Roulette {
     }
 }
 
-/// The logarithm of the probability that a walk goes on from `vertices` of this mean logarithm of the albedo, where roulette is
-/// late. What it owes is seven eighths of what it owed before and of one albedo more.
+/// Log probability that a walk with late roulette survives `vertices` vertices with this mean log `albedo`. In
+/// logarithms, each debt is seven eighths of the debt before and one more albedo.
 pub fn late(vertices: f32, albedo: f32) -> f32 {
     const KEPT: f32 = 7.0 / 8.0;
     albedo * (vertices - KEPT / (1.0 - KEPT) * (1.0 - KEPT.powf(vertices)))

@@ -1,6 +1,6 @@
-//! The segments of a path, and the walk along one through index-matched boundaries: `free_flight` samples where a
-//! segment ends, `transmittance` finds what remains along one whose ends are given, `forced` ends one in two ways at
-//! once. Media, and the boundaries between them, enter light transport here and nowhere else.
+//! The segments of a path, which may cross index-matched boundaries. `free_flight` samples where a segment ends;
+//! `transmittance` attenuates a segment with given ends; `forced` ends one in two ways at once. Media, and the
+//! boundaries between them, enter light transport here and nowhere else.
 
 mod forced;
 mod free_flight;
@@ -20,16 +20,16 @@ use crate::{
     shape::{Hit, Ray, SurfacePoint},
 };
 
-/// A segment that is being followed: what lies ahead of it, from its start or the boundary that it crossed last.
+/// The rest of a segment: from its start, or from the boundary that it crossed last.
 #[derive(Clone, Copy)]
 pub struct Segment<'a> {
     scene: &'a Scene,
     ray: Ray,
     /// The medium that the ray starts in.
     medium: MediumIndex,
-    /// How far behind the boundary the ray starts (m): the distance skipped to be clear of the surface still
-    /// counts as distance through a homogeneous medium there. In media whose mean free path is some hundreds
-    /// of rounding errors, light would otherwise always start too deep.
+    /// Distance from the boundary to the start of the ray (m), skipped to be clear of the surface. In a homogeneous
+    /// medium it still counts: where the mean free path is some hundreds of rounding errors, light would otherwise
+    /// start too deep.
     skipped: f32,
     /// Emitters do not block the segment: it leads to a camera that does not see them.
     hidden: bool,
@@ -59,8 +59,8 @@ impl<'a> Segment<'a> {
         self.hidden
     }
 
-    /// The next surface within `reach` (m), and what lies before it in the medium; all that is left of
-    /// the segment where there is none. Where media overlap, it finds out which of them that is.
+    /// The next surface within `reach` (m), and the interval of the medium before it; without a surface, all the rest
+    /// of the segment. Where media overlap, this also finds the medium.
     #[inline(always)]
     pub fn next<P: MediaProfile>(&mut self, reach: f32) -> (MediumInterval, Option<Hit>) {
         let Ray { origin, direction, t_max } = self.ray;
@@ -89,7 +89,7 @@ impl<'a> Segment<'a> {
         self.scene.null_transmission(point, self.ray.direction)
     }
 
-    /// A segment that reaches a surface passes or stops.
+    /// Samples whether the segment passes a surface or stops there.
     #[inline]
     pub fn sample_crossing(&self, point: &SurfacePoint, stream: &mut Stream) -> NullCrossing {
         let through = self.transmission(point);
@@ -133,18 +133,17 @@ impl<'a> Segment<'a> {
         self.medium = self.scene.medium_beyond(point, direction, self.medium);
     }
 
-    /// Aims at a given `end` again. Crossings are rounded: the segment is to end where it should, not in the surface
-    /// beyond.
+    /// Aims at `end` again. Crossings are rounded, and the segment must not end in the surface beyond.
     #[inline]
     fn aim(&mut self, end: Vec3) {
         let Ray { origin, direction, .. } = self.ray;
         let (aim, t_max, _) = measure::between(origin, end).unwrap_or((direction, 0.0, 0.0));
-        // An end so near to the boundary that the step across passed it has been reached.
+        // The step across the boundary passed an end this near: it is reached.
         let overshot = aim.dot(direction) <= 0.0;
         self.ray = match overshot {
             true => Ray { t_max: 0.0, ..self.ray },
-            // An end that lies on a boundary is before it: positions there are rounded by more than what is left, and the
-            // segment would cross to and fro for ever.
+            // Stop before an end on a boundary: positions there are rounded by more than the rest of the segment, which
+            // would cross to and fro for ever.
             false => Ray { origin, direction: aim, t_max: t_max * (1.0 - offset::gamma(8)) },
         };
     }
@@ -152,10 +151,10 @@ impl<'a> Segment<'a> {
 
 /// What happened to a sampled segment at a surface.
 pub enum NullCrossing {
-    /// It ends there, which had this probability from either side: it takes the place of sigma_t at a collision, cancels
-    /// in every ratio of densities, and divides the throughput.
+    /// It ends there, with this probability from either side. Like sigma_t at a collision, the probability cancels in
+    /// every ratio of densities; it divides the throughput.
     Stopped(f32),
-    /// It goes on, tinted by the first, which had the probability of the second.
+    /// It goes on: the transmission, and the probability of this.
     Passed(Spectrum, f32),
 }
 

@@ -22,7 +22,7 @@ impl StrategyKind {
     pub const ALL: [Self; 5] =
         [Self::EmitterHit, Self::NextEvent, Self::Connection, Self::Lens, Self::Equiangular];
 
-    /// `f` of each. [`array::map`](array::map) is not compiled into what calls it.
+    /// `f` of each. [`array::map`](array::map) is not inlined into its caller.
     #[inline(always)]
     pub fn each<T>(mut f: impl FnMut(Self) -> T) -> [T; Self::ALL.len()] {
         let [hit, next_event, connection, lens, equiangular] = Self::ALL;
@@ -56,7 +56,7 @@ impl StrategyKind {
 }
 
 impl Strategies {
-    /// True if those of `kind` run.
+    /// True if strategies of `kind` run.
     pub fn has(self, kind: StrategyKind) -> bool {
         match kind {
             StrategyKind::EmitterHit => self.emitter_hit,
@@ -67,23 +67,23 @@ impl Strategies {
         }
     }
 
-    /// Names of those that run, as in scene files and on the command line.
+    /// Names of the strategies that run, as in scene files and on the command line.
     pub fn names(self) -> Vec<&'static str> {
         StrategyKind::ALL.into_iter().filter(|kind| self.has(*kind)).map(StrategyKind::name).collect()
     }
 
-    /// True if the strategy of `s` light and `t` camera vertices runs. Emitters in view are left to camera subpaths that hit
-    /// them, with far less noise than light subpaths' starts that are connected to the lens.
+    /// True if the strategy of `s` light and `t` camera vertices runs. Emitters in view are left to camera subpaths
+    /// that hit them: connections of light subpaths' starts to the lens are far noisier.
     pub fn runs(self, s: u32, t: u32) -> bool {
         self.has(StrategyKind::of(s, t)) && !((s, t) == (1, 1) && self.emitter_hit)
     }
 
-    /// True if any of those that run needs light subpaths.
+    /// True if any strategy that runs needs light subpaths.
     pub fn need_light_walks(self) -> bool {
         self.connection || self.lens
     }
 
-    /// The same without those of `kind`.
+    /// The same without strategies of `kind`.
     pub fn without(mut self, kind: StrategyKind) -> Self {
         match kind {
             StrategyKind::EmitterHit => self.emitter_hit = false,

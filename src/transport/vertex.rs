@@ -17,7 +17,7 @@ use crate::{
     scene::Scene,
 };
 
-/// All that is known of a camera or light subpath when it reaches its i-th point after the start, before anything happens there.
+/// The state of a camera or light subpath at its i-th point after the start, before anything happens there.
 ///
 /// The last four fields are the running sums of the weights. With p>_i the density by which this
 /// walk makes vertex i (flight, direction and geometry, LW96 eq. 13) and p<_i that of the opposite walk, for
@@ -54,13 +54,13 @@ pub struct Subpath<S: MisSums> {
 pub struct Vertex<S: MisSums> {
     /// Surface or medium.
     pub interaction: Interaction,
-    /// Probability that the walk goes on from here, if that is drawn before the flight; else 1.
+    /// Survival probability, if roulette is drawn before the flight; else 1.
     pub survival: f32,
-    /// What is drawn at the end of the flight.
+    /// The roulette that is drawn at the end of the flight.
     pub pending: Pending,
     /// n_i: expected samples of the strategy that connects across the segment before; 0 where none can.
     pub connections: f32,
-    /// Of which kind that strategy is.
+    /// The kind of that strategy.
     pub kind: StrategyKind,
     /// What the guide says here, if there is one.
     pub guidance: Guidance,
@@ -76,7 +76,7 @@ impl<S: MisSums> Subpath<S> {
         Arrival { medium, incoming, edges, density: 1.0 / inv_pdf, throughput }
     }
 
-    /// The roulette that the vertex before left to this one; none where the walk ends by it.
+    /// Draws the roulette that the vertex before left pending; none where the walk ends.
     #[inline]
     pub fn survive(&mut self, survival: f32, stream: &mut Stream) -> Option<()> {
         if survival < 1.0 {
@@ -143,7 +143,7 @@ impl<S: MisSums> Vertex<S> {
             .and(self.subpath.others_over_pdf_rev.scaled(pdf_rev))
     }
 
-    /// True at a collision from where neither an emitter nor the camera is seen.
+    /// True at a collision from which neither an emitter nor the camera can be seen.
     #[inline]
     pub fn is_shut_in<P: Profile>(&self, scene: &Scene) -> bool {
         P::MEDIA
@@ -156,7 +156,7 @@ impl<S: MisSums> Vertex<S> {
         matches!(&self.interaction, Interaction::Surface(point) if scene.surface(point.shape).emitter.is_some())
     }
 
-    /// True if something of its scattering is not Dirac.
+    /// True if some of its scattering is not Dirac.
     #[inline]
     pub fn is_connectible(&self, scene: &Scene) -> bool {
         self.interaction.is_connectible(scene)

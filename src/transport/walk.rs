@@ -25,7 +25,7 @@ use crate::{
 };
 use scatter::{ScatterSample, scatter};
 
-/// A walk about to fly: everything known before the next vertex is.
+/// A walk as it leaves a vertex: everything known before the next one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Departure<S: MisSums> {
     /// The vertex left behind.
@@ -72,7 +72,7 @@ impl<S: MisSums> Departure<S> {
 
 /// What happens at the vertices of a walk.
 pub(super) trait Visitor<P: Profile> {
-    /// Of which kind the strategy is that connects across segment `edges` of the walk.
+    /// The kind of the strategy that connects across segment `edges` of the walk.
     fn kind(edges: u32) -> StrategyKind;
 
     /// n of the strategy that connects across the segment to the vertex at `position`, `edges` segments from
@@ -83,11 +83,11 @@ pub(super) trait Visitor<P: Profile> {
     #[inline]
     fn depart(&mut self, _departure: &Departure<P::MisSums>) {}
 
-    /// A vertex was reached, where the walk may end.
+    /// A vertex was reached; the walk may end there.
     #[inline]
     fn reach(&mut self, _vertex: &Vertex<P::MisSums>) {}
 
-    /// It did not; it may scatter on.
+    /// The walk did not end at the vertex and may scatter.
     fn arrive(&mut self, vertex: &Vertex<P::MisSums>, stream: &mut Stream);
 
     /// The flight from `departure` passes something that may emit.
@@ -99,8 +99,7 @@ pub(super) trait Visitor<P: Profile> {
     ) {
     }
 
-    /// The walk left the scene, in the direction that the `incoming` of `subpath` is the reverse of; its density is per
-    /// solid angle.
+    /// The walk left the scene, opposite to `incoming` of the subpath; its density is per solid angle.
     fn escape(&mut self, _subpath: &Subpath<P::MisSums>) {}
 }
 
@@ -113,9 +112,9 @@ pub(super) struct Kind<'a> {
     pub hero: usize,
     /// Most segments.
     pub max_edges: u32,
-    /// When it ends before.
+    /// Its Russian roulette.
     pub roulette: Roulette,
-    /// What it follows.
+    /// The guide that it follows.
     pub guide: Option<&'a Guide>,
 }
 
@@ -149,7 +148,8 @@ pub(super) fn walk<P: Profile>(
     }
 }
 
-/// Shows the end of a flight to `visitor`, the subpath as `adjusted`; how the walk goes on from there, if it does.
+/// Shows the end of a flight to `visitor`, after `adjusted` has changed the subpath; the next departure, if the walk
+/// goes on.
 #[inline(always)]
 pub(super) fn go_on<P: Profile>(
     scene: &Scene,
@@ -181,13 +181,13 @@ pub(super) fn go_on<P: Profile>(
     if vertex.subpath.edges < LONG { Some(next) } else { thinned(scene, next, stream) }
 }
 
-/// Walks of more segments end by Russian roulette in fog without end, which white walks would never leave.
+/// Walks of more segments face Russian roulette in endless fog, which walks of albedo 1 would never leave.
 const LONG: u32 = 100_000;
-/// Walks of more segments do so elsewhere: in a white ball of 6,000 mean free paths across, they are 1 in 50.
+/// Walks of more segments face it elsewhere too; in a white ball 6,000 mean free paths across, these are 1 in 50.
 const LONGEST: u32 = 10_000_000;
 
-/// Russian roulette that no density contains, the same for all strategies. Of n segments, more than `LONG`, its factor is
-/// n / `LONG`: what a path of n segments contributes in fog without end falls faster than that rises.
+/// Russian roulette that no density contains: it is the same for all strategies. For n > `LONG` segments its factor is
+/// n / `LONG`; in endless fog the contribution of a path of n segments falls faster than this rises.
 #[cold]
 fn thinned<S: MisSums>(scene: &Scene, next: Departure<S>, stream: &mut Stream) -> Option<Departure<S>> {
     if next.edges < LONGEST && !scene.is_endless() {
@@ -202,7 +202,7 @@ fn thinned<S: MisSums>(scene: &Scene, next: Departure<S>, stream: &mut Stream) -
 pub(super) struct Arrival<L> {
     /// World position; none at infinity.
     pub position: Option<Vec3>,
-    /// See [`Interaction::cosine`]; 1 where it is of no surface and no collision.
+    /// See [`Interaction::cosine`]; 1 where there is neither a surface nor a collision.
     pub cosine: f32,
     /// sigma_t per channel at a collision, the rate of [`crate::medium::Emission::rate`] where emission is
     /// sampled in a medium, 1 elsewhere.
@@ -248,8 +248,8 @@ pub(super) fn land<P: Profile, V: Visitor<P>>(
 
 /// The subpath that a flight extends to `at`; none if its density is not finite and positive.
 ///
-/// LW96 eq. 13: p' p'' / d^2, the density of the direction (`departure.pdf_fwd`), that of the flight (eq. 6 in a
-/// medium, eq. 7 on a surface) and the geometry; its inverse is what weights need.
+/// LW96 eq. 13: p' p'' / d^2, that is, the density of the direction (`departure.pdf_fwd`), the density of the flight
+/// (eq. 6 in a medium, eq. 7 on a surface) and the geometry. Weights need its inverse.
 #[inline]
 pub(super) fn arrive<P: Profile>(
     departure: &Departure<P::MisSums>,
@@ -271,8 +271,7 @@ pub(super) fn arrive<P: Profile>(
     let geometry = measure::solid_angle_to_vertex(at.cosine, distance_squared);
     let pdf = departure.pdf_fwd * transmitted.hero(hero) * at.sigma_t.hero(hero) * geometry;
     let inv_pdf = 1.0 / pdf;
-    // A density of 0, infinite, or so great or small that its inverse is: no walk in a real scene reaches
-    // this.
+    // The density or its inverse is 0 or infinite: no walk in a real scene reaches this.
     if !(inv_pdf > 0.0 && inv_pdf < f32::INFINITY) {
         return None;
     }
@@ -316,9 +315,9 @@ pub(super) fn cross<P: Profile>(
     Some(subpath)
 }
 
-/// Squared distance of two vertices one flight apart, never 0. In dense media many a flight is shorter than a rounding
-/// error of positions; it counts as one, for its walk goes on: ended there, walks of thousands of collisions would lose
-/// their light.
+/// Squared distance of two vertices one flight apart, never 0. In dense media many flights are shorter than a rounding
+/// error of positions. They count as one rounding error: ending them would lose the light of walks of thousands of
+/// collisions.
 #[inline]
 fn squared_distance(a: Vec3, b: Vec3) -> f32 {
     let squared = a.distance_squared(b);

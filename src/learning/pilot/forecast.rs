@@ -1,14 +1,15 @@
-//! What the samples of a pilot by all strategies tell of other choices.
+//! Forecasts of other choices, from the samples of a pilot by all strategies.
 //!
-//! By the balance heuristic, a sample that brought y has the second moment y^2 (sum of n p) / (sum of n' p) under counts n'
-//! in place of n (after Grittmann et al. 2022, Efficiency-Aware Multiple Importance Sampling). So paths that strategies left
-//! out would have to make count in full, however rarely the others make them: the strategies that do run have seen them.
-//! Where light subpaths begin at learnt starts, each contribution also tells how often they would begin there otherwise; and
-//! if walks ended more often, the albedos of a path tell how often they would get by.
+//! By the balance heuristic, a sample of the contribution y has the second moment y^2 (sum of n p) / (sum of n' p)
+//! under counts n' in place of n (after Grittmann et al. 2022, Efficiency-Aware Multiple Importance Sampling). So paths
+//! of strategies that a choice leaves out count in full, however rarely its others make them: the pilot has seen them.
+//! With learnt starts, each contribution also says how often light subpaths would start there otherwise. The albedos of
+//! a path say how often walks would survive if they ended more often.
 //!
-//! Contributions to one sample add their products to its second moment: a walk that is connected to a sky at each of its many
-//! vertices brings a sum, one that hits it a single number. Of two of them, the product under other counts and ends is known as
-//! well; see [`Forecast::errors`]. So is the squared mean, which the variance lacks, by pairs of samples of a pixel.
+//! Two contributions to one sample also add their product to its second moment: a walk connected to a sky at each of
+//! many vertices brings a sum, a walk that hits the sky a single number. This product is known under other counts and
+//! roulettes as well; see [`Forecast::errors`]. The squared mean, which the variance lacks, comes from pairs of samples
+//! of a pixel.
 
 use super::{
     Choice, End, WALKS_END,
@@ -25,24 +26,25 @@ use crate::{
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// The image is divided into so many tiles across and down, at most, whose pixels count as one.
+/// Most tiles of the image across and down; the pixels of a tile count as one.
 const TILES: u32 = 16;
-/// The part of the tiles, those with the greatest errors, in which few samples decide.
+/// The part of the tiles, those of the greatest errors, in which few samples decide.
 const FEW: f64 = 0.02;
-/// Of a tile's second moment: variances below are rounding errors.
+/// Variances below this part of a tile's second moment are rounding errors.
 const LEAST_VARIANCE: f64 = 1e-3;
 
-/// Segments after which no further pass begins, but for the second one: where walks are long, few say enough.
+/// Segments after which no pass begins, except the second: where walks are long, few say enough.
 const SEGMENTS: f64 = 2e6;
 /// Pixels of a block of a pilot: fewer than those of an image, so that pilots may be short.
 pub(crate) const PIXELS_PER_BLOCK: usize = 256;
 
-/// Time of parts of a sample, over that of a segment of a walk, as measured in scenes of fog and smoke. In 29 others, drawn at
-/// random, times of choices were off by 14 % (one standard deviation), and by 13 % with these numbers fitted to them.
+/// Times of the parts of a sample, over that of a segment of a walk, measured in scenes of fog and smoke. In 29 other
+/// scenes drawn at random, forecast times were off by 14 % (one standard deviation), or 13 % with these numbers fitted
+/// to them.
 mod time {
     /// Setting out from the sensor or an emitter.
     pub(super) const START: f64 = 0.5;
-    /// The part of it that is spent on light subpaths which do not set out.
+    /// The part of this for a light subpath that does not set out.
     pub(super) const DROPPED: f64 = 0.1;
     /// A connection tried, by kind of strategy.
     pub(super) const TRY: [f64; 5] = [0.1, 1.3, 0.7, 0.4, 2.0];
@@ -62,7 +64,7 @@ pub(super) struct Tile {
 pub struct Error {
     /// Its part in most tiles.
     pub usual: f64,
-    /// That in a few with the greatest errors.
+    /// Its part in the few tiles of the greatest errors.
     pub few: f64,
 }
 
@@ -76,13 +78,13 @@ impl Error {
 /// What the samples say.
 pub(crate) struct Forecast {
     pub(super) tiles: Vec<Tile>,
-    /// Those that have samples of camera subpaths: their tile, and how many.
+    /// Pixels with samples of camera subpaths: the tile, and the number of samples.
     pub(super) pixels: Vec<(usize, f64)>,
     /// Contributions other than zero, each with its tile.
     pub(super) found: Vec<(u32, Found)>,
     pub(super) camera: Works,
     pub(super) light: Works,
-    /// That of light subpaths without learnt starts.
+    /// The work of light subpaths without learnt starts.
     pub(super) light_unlearnt: Works,
     /// Light subpaths began at learnt starts.
     pub(super) is_learnt: bool,
@@ -91,7 +93,8 @@ pub(crate) struct Forecast {
 }
 
 impl Forecast {
-    /// Gathers the samples of so many passes of `compiled`, whose walks end by `survival`, of this number of pixels at least.
+    /// Gathers the samples of so many `passes` over at least so many `pixels` of `compiled`, whose walks end by
+    /// `survival`.
     pub(super) fn fly(compiled: &dyn Compiled, survival: Survival, passes: usize, pixels: usize) -> Self {
         let blocks = pixels.div_ceil(PIXELS_PER_BLOCK).clamp(1, compiled.blocks().count());
         let mut parts: Vec<Part> = Vec::new();
@@ -149,8 +152,7 @@ impl Forecast {
         Self { tiles, pixels, found, camera, light, light_unlearnt, is_learnt: false, survival }
     }
 
-    /// The part of the light subpaths that is seen; none of none. Where it is small, it may be worth learning where light should
-    /// start.
+    /// The part of the light subpaths that the lens sees; none without any. Where it is small, learnt starts may pay.
     pub(super) fn seen_subpaths(&self) -> Option<f64> {
         let [Work { reaching, walks, .. }, ..] = self.light;
         (walks > 0.0).then(|| reaching / walks)
@@ -199,8 +201,8 @@ impl Forecast {
         Error { usual, few }
     }
 
-    /// The same over the tiles that light was seen in: where few samples find any, the others look free of noise. Infinite
-    /// where no light was seen at all.
+    /// The same over the tiles in which light was seen: where few samples find any, the others look free of noise.
+    /// Infinite where no light was seen.
     pub(super) fn error_where_lit(&self, choice: &Choice) -> f64 {
         let is_lit = |(_, tile): &(usize, &Tile)| tile.mean > 0.0;
         let pixels: f64 = self.seen().filter(is_lit).map(|(_, tile)| tile.pixels).sum();
@@ -256,7 +258,7 @@ impl Forecast {
 
     /// How often strategies run by `choice`.
     fn counts(&self, choice: &Choice) -> Counts {
-        // Connections to each vertex are as many, however many vertices light subpaths leave.
+        // Each vertex has the same number of connections, however many vertices light subpaths leave.
         let draws = self.light[index(End::AtOnce(self.survival))].kept.max(1.0)
             / self.light_work(&choice.effort).kept.max(1.0);
         let mut each = choice.counts().map(|count| count as f32);

@@ -1,7 +1,8 @@
-//! Pilots: a few samples by all strategies, which foretell how well others would do for their time.
+//! Pilots: a few samples by all strategies, which forecast the efficiency of other choices.
 //!
-//! No race of the best follows: over 29 scenes drawn at random, what 10,000 samples of each of them showed decided no better than
-//! the forecast from 3,000 samples of all, which sees the rare bright paths of every strategy by those of the others.
+//! No race between the best choices follows. Over 29 scenes drawn at random, 10,000 samples of each decided no better
+//! than the forecast from 3,000 samples of all strategies, which sees the rare bright paths of each strategy through
+//! the others.
 
 mod forecast;
 mod moments;
@@ -21,13 +22,13 @@ use crate::{
 use forecast::{Forecast, PIXELS_PER_BLOCK};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Of its random numbers; the same for all images of a scene, so that all of them are made alike.
+/// Seed of its random numbers; the same for all images of a scene, so that all of them are made alike.
 const SEED: u64 = 0x7079_6c6f_7473;
 /// A pilot takes this part of an image's samples...
 const SHARE: f64 = 1.0 / 128.0;
-/// ... but so many at least, as from fewer all alike do as well as what they choose...
+/// ... but at least so many: choices from fewer do no better than all strategies equally...
 const LEAST: f64 = 768.0;
-/// ... and no more than so many, as more tell hardly more.
+/// ... and at most so many: more tell hardly more.
 const MOST: f64 = 16384.0;
 /// It is left out where it would take a greater part of an image's samples.
 const LARGEST_SHARE: f64 = 1.0 / 32.0;
@@ -35,29 +36,31 @@ const LARGEST_SHARE: f64 = 1.0 / 32.0;
 const UNSEEN: f64 = 3.0;
 /// Samples of each pixel that takes part: enough for a variance.
 const PASSES: usize = 4;
-/// Longest path. Where walks hardly ever end, what comes later would be most of the time and little of the light.
+/// Longest path. Where walks hardly ever end, later vertices would take most of the time and bring little of the light.
 const DEEPEST: u32 = 256;
-/// Whatever is not common must be so much better: pilots are noisy, and some do not see that light subpaths are spread less evenly.
+/// Uncommon choices must be better by this factor: pilots are noisy, and some do not see that light subpaths are spread
+/// less evenly.
 pub const WORTHWHILE: f64 = 1.1;
-/// By how much learnt starts must be better. Light subpaths that reach the image, and connections to them, take longer than counts
-/// say, and a pilot that has learnt its starts finds the others somewhat too noisy. Measured: in 35 scenes drawn at random, the
-/// truth was 0.7 of what was foretold where that was above 1.1, training apart.
+/// Learnt starts must be better by this factor. Light subpaths that reach the image, and connections to them, take
+/// longer than counts say; and a pilot with learnt starts finds other choices somewhat too noisy. Measured in 35 scenes
+/// drawn at random: the true gain was 0.7 of the forecast where that was above 1.1, training apart.
 pub const LEARNT: f64 = 1.6;
-/// Starts are learnt if no more than this part of the light subpaths is seen. Measured in the same scenes: starts paid where 0 to
-/// 0.09 were seen.
+/// Starts are learnt if the lens sees at most this part of the light subpaths. Measured in the same scenes: starts paid
+/// where it saw 0 to 0.09 of them.
 const REMOTE: f64 = 0.1;
 /// The part of an image's time that the first rounds of training may take, for starts.
 const STARTS_SHARE: f64 = 0.2;
-/// Starts are learnt where the squared relative error of a pixel sample is greater: elsewhere there is little to gain. Measured:
-/// 2 to 5 in four of 80 scenes drawn at random where they paid, 0.6 in one more, which is 1.6 times worse by this; less than 1 in
-/// `glass_fog_sky`, `nested_media` and `plume`, where learning them took a fifth of an image of half a second for nothing, or led
-/// to a choice that took longer than it gave.
+/// Starts are learnt where the squared relative error of a pixel sample is greater than this: elsewhere there is little
+/// to gain. Measured in 80 scenes drawn at random: 2 to 5 in four where starts paid, and 0.6 in one more, which this
+/// makes 1.6 times worse. In `glass_fog_sky`, `nested_media` and `plume` it is less than 1: learning took a fifth of an
+/// image of half a second for nothing, or led to a choice that cost more time than it gained.
 const STARTS_NOISE: f64 = 1.0;
-/// Squared relative errors of a pixel sample where light is seen, and the part of an image's time that the first rounds of a guide
-/// may take where the error is greater. Below the first, asking takes longer than a guide could gain; above the second, one that
-/// pays gained 1.8 to 45 times. Measured: 61 in a room lit through its keyhole, 40 under a skylight and 15 to 30 in two rooms drawn at
-/// random that are lit by a sky through a hole, where one pays for all strategies; 4 to 160 in others lit through openings and
-/// round corners, where none does; 0.1 to 4 elsewhere.
+/// Squared relative errors of a pixel sample where light is seen, and the part of an image's time that the first rounds
+/// of a guide may take above each. Below the first error, trying takes longer than a guide could gain. Above the
+/// second, guides that paid gained 1.8 to 45 times. Measured: a guide pays for all strategies in a room lit through its
+/// keyhole (error 61), under a skylight (40) and in two rooms drawn at random that are lit by a sky through a hole (15
+/// to 30). It does not pay in others lit through openings and round corners (4 to 160). Elsewhere the error is 0.1 to
+/// 4.
 const GUIDE_SHARES: [(f64, f64); 2] = [(2.0, 0.1), (15.0, 0.4)];
 
 /// When walks end.
@@ -69,17 +72,17 @@ enum End {
     Late,
 }
 
-/// When walks may be asked to end.
+/// The roulettes that may be requested.
 const SURVIVALS: [Survival; 2] = [Survival::FourthRoot, Survival::Albedo];
-/// When they may end.
+/// The roulettes that may result.
 const WALKS_END: [End; 3] = [End::AtOnce(Survival::FourthRoot), End::AtOnce(Survival::Albedo), End::Late];
-/// How many light subpaths there may be for a sample, and how many connections of a vertex.
+/// The choices of light subpaths per sample and connections per vertex.
 const COUNTS: [(f32, u32); 5] = [(1.0, 1), (0.5, 1), (2.0, 1), (1.0, 2), (1.0, 4)];
 
 /// What was chosen, and how much it is worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// Strategies that it could choose among, and equiangular sampling, which all of them do without.
+    /// Strategies to choose among, without equiangular sampling, which may be added.
     pub among: Strategies,
     /// Strategies that run.
     pub strategies: Strategies,
@@ -113,8 +116,8 @@ pub struct Report {
     pub samples: f64,
 }
 
-/// The strategies among those of `settings` that are worth their time on `film`, how often, when walks end, and whether they
-/// follow a guide, for as many samples as their budget allows.
+/// The strategies of `settings` that are worth their time on `film`, how often each runs, when walks end, and whether
+/// they follow a guide; for the number of samples that the budget allows.
 pub fn choose(scene: &Scene, film: &Film, settings: &Settings, decided: Decided) -> Report {
     let all = settings.options.strategies;
     let asks = match settings.options.effort.guide {
@@ -137,7 +140,7 @@ pub fn choose(scene: &Scene, film: &Film, settings: &Settings, decided: Decided)
     catch_unwind(AssertUnwindSafe(fly)).unwrap_or(none)
 }
 
-/// What a pilot finds decided already.
+/// Decisions made before the pilot.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Decided {
     /// Whether light subpaths begin at learnt starts.
@@ -146,14 +149,14 @@ pub struct Decided {
     pub sky: Option<Sky>,
 }
 
-/// Those that are flown for one choice, and what they may choose.
+/// The pilots for one choice, and what they may choose.
 #[derive(Clone, Copy)]
 struct Pilots<'a> {
     scene: &'a Scene,
     film: &'a Film,
     settings: &'a Settings,
     decided: Decided,
-    /// All strategies, with the guide and the starts that there are before any pilot.
+    /// All strategies, with the guide and the starts given before any pilot.
     base: Choice,
     /// Samples to come.
     work: f64,
@@ -203,7 +206,8 @@ impl Pilots<'_> {
         Forecast::fly(&*compiled, effort.survival, passes, samples / passes)
     }
 
-    /// When walks may end: first that of the pilot, which tells of others that end sooner. In fog without end they had better do.
+    /// The roulettes to choose from. The pilot uses the first and forecasts those that end walks sooner. Endless fog
+    /// needs the one by the albedo.
     fn survivals(&self) -> &'static [Survival] {
         if self.scene.is_endless() { &[Survival::Albedo] } else { &SURVIVALS }
     }
@@ -240,15 +244,15 @@ impl Pilots<'_> {
         Report { choice: Choice { gain, ..best.choice }, candidates, samples: pilot.samples() }
     }
 
-    /// True if walks of `choice` end as by the survival that is common.
+    /// True if `choice` is redundant: its walks end as with the common survival.
     fn is_second(&self, pilot: &Forecast, choice: &Choice) -> bool {
         let survival = self.base.effort.survival;
         let common = Choice { effort: Effort { survival, ..choice.effort }, ..*choice };
         *choice != common && pilot.end(choice) == pilot.end(&common)
     }
 
-    /// Error x time. What few tiles have of the error is chance, and more of it comes than a short pilot sees, whatever is chosen:
-    /// in place of it counts so many times the `least` that any choice has there. What is not common must be worth more.
+    /// Error x time. The error in the few worst tiles is chance, and any choice has more of it than a short pilot sees:
+    /// [`UNSEEN`] times the `least` of all choices replaces it. Uncommon choices must be worth more.
     fn judge(&self, foretold: &Foretold, least: f64) -> f64 {
         let Choice { strategies, effort, .. } = foretold.choice;
         let all = self.base.strategies;
@@ -259,9 +263,9 @@ impl Pilots<'_> {
         burden * if learnt { LEARNT } else { 1.0 } * (foretold.error.usual + UNSEEN * least) * foretold.time
     }
 
-    /// The choices that leave no light out and nothing open that is decided; with learnt starts too if a pilot knows of them. Of
-    /// strategies that need light subpaths, all run or none: in 29 scenes drawn at random, some alone were never much better, and
-    /// a short pilot may not see what others miss.
+    /// The choices that leave no light out and keep to earlier decisions; with learnt starts too if the pilot knows
+    /// them. Either all strategies that need light subpaths run, or none: in 29 scenes drawn at random, only some of
+    /// them were never much better, and a short pilot may not see what they miss.
     fn candidates(&self, knows_starts: bool) -> Vec<Choice> {
         let all = self.strategies();
         let camera = Strategies { connection: false, lens: false, ..all };
@@ -308,7 +312,7 @@ impl Pilots<'_> {
 }
 
 impl Choice {
-    /// Samples of every kind of strategies, over those of all at equal effort.
+    /// Samples of every kind of strategy, over those at equal effort.
     fn counts(&self) -> [f64; StrategyKind::ALL.len()] {
         StrategyKind::each(|kind| match kind {
             _ if !self.strategies.has(kind) => 0.0,

@@ -12,9 +12,9 @@ pub(super) struct Weighed {
     pub shares: [f32; StrategyKind::ALL.len()],
     /// The contribution itself.
     pub value: f32,
-    /// How often walks get as far, over how often they did.
+    /// Probability that walks get this far, over that in the pilot.
     pub passed: f32,
-    /// The same of the strategy that brought it.
+    /// The same for the walks of the strategy that found it.
     pub passed_own: f32,
 }
 
@@ -22,8 +22,8 @@ impl Weighed {
     /// `found` in `tile`, if walks ended by `end` rather than by `before`.
     pub(super) fn of(tile: u32, found: &Found, end: End, before: Survival) -> Self {
         let passed = found.ends.passed(end, before);
-        // Of all vertices between, both walks together went on from one less where they were connected to an emitter or the lens,
-        // and from two less where they were connected to each other.
+        // Of all vertices between, the walks survived all but one if connected to an emitter or the lens, and all but
+        // two if connected to each other.
         let of_one = found.ends.passed_one(end, before);
         let [hits, next_event, connections, lens, equiangular] = found.shares;
         let shares =
@@ -53,12 +53,12 @@ pub(super) struct Counts {
 /// n' p over all strategies of a path, in units of the n p that the pilot had.
 pub(super) struct Density {
     pub all: f32,
-    /// That of emitters that are hit.
+    /// The part of hit emitters.
     hit: f32,
 }
 
 impl Counts {
-    /// Of the strategy `kind`, as far as it finds a contribution.
+    /// Samples of the strategy `kind` that can find a contribution.
     #[inline(always)]
     pub(super) fn of(&self, kind: StrategyKind, one: &Weighed) -> f32 {
         let count = self.each[kind as usize];
@@ -69,7 +69,7 @@ impl Counts {
         }
     }
 
-    /// Written out: all choices go through all contributions.
+    /// Written out for speed: all choices go through all contributions.
     #[inline(always)]
     pub(super) fn density(&self, one: &Weighed) -> Density {
         let [hits, next_event, connections, lens, equiangular] = self.each;
@@ -83,7 +83,7 @@ impl Counts {
 }
 
 impl Density {
-    /// The second moment of `one`, the transmittance of whose connection is `expected` times what it was found to be.
+    /// The second moment of `one`. The expected transmittance of its connection is `expected` times the one found.
     #[inline(always)]
     pub(super) fn square(&self, one: &Weighed, expected: f32) -> f64 {
         let hit = self.hit / self.all.max(f32::MIN_POSITIVE);
@@ -91,7 +91,7 @@ impl Density {
     }
 }
 
-/// What camera subpaths of a pixel bring.
+/// Contributions of the camera subpaths of a pixel.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Sums {
     pub sum: f64,
@@ -116,8 +116,8 @@ impl Subpaths {
         Self { pixels: vec![Sums::default(); pixels], sample: none, pixel: none, sum: 0.0, before: 0.0 }
     }
 
-    /// Adds a contribution, which is no shorter than those before of its subpath, and is `value` where walks get as far as they
-    /// did. Returns what products with those before add to the second moment.
+    /// Adds a contribution, which is `value` if walks survive as in the pilot. Those of one subpath come in order of
+    /// path length. Returns what the products with those before add to the second moment.
     #[inline(always)]
     pub(super) fn add(&mut self, found: &Found, one: &Weighed, value: f32) -> f64 {
         if self.sample != found.sample {

@@ -16,7 +16,7 @@ use crate::{
     },
 };
 
-/// Of each of [`WALKS_END`].
+/// One for each of [`WALKS_END`].
 pub(super) type BySurvival<T> = [T; WALKS_END.len()];
 
 /// A contribution to a pixel.
@@ -30,13 +30,14 @@ pub(super) struct Found {
     pub ends: Ends,
     /// How often light subpaths would start there without learnt starts, over how often they do.
     pub unlearnt: f32,
-    /// How often next-event estimation would find its light if it left the environment alone, over how often it does.
+    /// Probability that next-event estimation finds its light if it leaves out the environment, over that with it.
     pub without_sky: f32,
     /// The kind of the strategy that brought it.
     pub kind: StrategyKind,
-    /// What the weights take the transmittance of its connection for, over what it was found to be.
+    /// Transmittance of its connection as the weights use it, over the estimate found.
     pub expected: f32,
-    /// Which of its block's camera subpaths: those of one follow each other, the shortest paths first.
+    /// Number of its camera subpath in the block. Contributions of one subpath follow each other, the shortest paths
+    /// first.
     pub sample: u32,
 }
 
@@ -48,11 +49,11 @@ pub(super) struct Ends {
     albedo: f32,
 }
 
-/// Probabilities to go on are taken to be no less: what comes after that does not count.
+/// Least survival probability: what comes after a lesser one does not count.
 const LEAST: f32 = 1e-3;
 
 impl Ends {
-    /// One that walks which end by `survival` go on from with this `probability`.
+    /// A vertex that walks with roulette by `survival` survive with this `probability`.
     fn at(probability: f32, survival: Survival) -> Self {
         Self { vertices: 1, albedo: probability.max(LEAST).ln() / survival.exponent() }
     }
@@ -61,18 +62,18 @@ impl Ends {
         Self { vertices: self.vertices + other.vertices, albedo: self.albedo + other.albedo }
     }
 
-    /// How often walks would get by, if they ended so, over how often they do by the survival `before`.
+    /// Probability that walks survive these vertices if they end by `now`, over that by the survival `before`.
     pub(super) fn passed(self, now: End, before: Survival) -> f32 {
         let now = match now {
             End::AtOnce(survival) => survival.exponent() * self.albedo,
             End::Late if self.vertices == 0 => 0.0,
-            // The roulette of the last one comes after all that is found from there.
+            // The roulette of the last vertex comes after all that is found from there.
             End::Late => roulette::late(self.vertices as f32 - 1.0, self.of_one()),
         };
         (now - before.exponent() * self.albedo).exp()
     }
 
-    /// How often walks get by one vertex more, if they end so and did by the survival `before`, over how often they do.
+    /// The same for one vertex more, of mean albedo.
     pub(super) fn passed_one(self, now: End, before: Survival) -> f32 {
         let now = match now {
             End::AtOnce(survival) => survival.exponent(),
@@ -91,13 +92,13 @@ impl Ends {
 #[derive(Clone, Copy, Default)]
 pub(super) struct Work {
     pub walks: f64,
-    /// Those that set out.
+    /// Walks that set out.
     pub begun: f64,
     pub segments: f64,
     pub tries: [f64; StrategyKind::ALL.len()],
     /// Vertices of light subpaths that are kept for connections.
     pub kept: f64,
-    /// Light subpaths that the lens sees anything of.
+    /// Light subpaths that the lens sees.
     pub reaching: f64,
 }
 

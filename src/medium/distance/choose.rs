@@ -8,7 +8,7 @@ use crate::{
     volume::VolumeModel,
 };
 
-/// Sections that are tried.
+/// Number of sections that are tried.
 const SECTIONS: u64 = 256;
 /// Estimates of the transmittance of each; their variance counts as cost.
 const ESTIMATES: u64 = 8;
@@ -16,7 +16,7 @@ const ESTIMATES: u64 = 8;
 const SHORTEST: f32 = 1e-3;
 /// Marching steps are at least the box's diagonal over this.
 const FINEST: f32 = 16_384.0;
-/// The same of its shortest side.
+/// The same for its shortest side.
 const THINNEST: f32 = 4_096.0;
 
 /// The method `choice`, ready for work.
@@ -55,12 +55,12 @@ pub fn choose(
 fn pays_exactly(medium: &Extinction, tracking: &NullCollision) -> bool {
     let exact = COST_OF_CELL * mean(medium, |segment, _| cells(medium, segment));
     let work = work_of_tracking(medium, tracking);
-    // Noise only makes tracking more expensive; and where it costs a lot, so would measuring it.
+    // Noise only makes tracking more expensive. Where tracking costs a lot, so would measuring its noise.
     exact <= work || exact <= work * (1.0 + noise_of_tracking(medium, tracking))
 }
 
-/// Integrating a cell of a grid, entering a coarse cell, and looking up a density, in the same unit (about a
-/// nanosecond on the machines it was measured on; see the timing test of the trackers).
+/// Costs of integrating a cell of a grid, entering a coarse cell, and looking up a density, in one unit (about a
+/// nanosecond where it was measured; see the timing test of the trackers).
 const COST_OF_CELL: f64 = 16.0;
 const COST_OF_PIECE: f64 = 10.0;
 const COST_OF_LOOKUP: f64 = 45.0;
@@ -78,7 +78,8 @@ fn work_of_tracking(medium: &Extinction, tracking: &NullCollision) -> f64 {
     })
 }
 
-/// The relative variance that such estimates add to that of the light they attenuate (taken to vary by its own mean).
+/// The relative variance that these estimates add to that of the light they attenuate (whose standard deviation is
+/// taken to be its mean).
 fn noise_of_tracking(medium: &Extinction, tracking: &NullCollision) -> f64 {
     let estimate = |segment: &RaySegment, stream: &mut Stream| {
         let found = tracking.attenuation::<Spectrum>(medium, segment, stream);
@@ -94,7 +95,7 @@ fn noise_of_tracking(medium: &Extinction, tracking: &NullCollision) -> f64 {
     if first > 0.0 { (second / first - 1.0).max(0.0) } else { 0.0 }
 }
 
-/// The longest step by which no segment's transmittance errs by more than `error`, in steps of a factor of 2.
+/// The longest step for which no segment's transmittance is off by more than `error`, in steps of a factor of 2.
 fn longest_step(medium: &Extinction, error: f64) -> f32 {
     let diagonal = (medium.high - medium.low).length();
     let finest = finest(medium, diagonal);
@@ -120,8 +121,8 @@ fn longest_step(medium: &Extinction, error: f64) -> f32 {
     step
 }
 
-/// The least step that is considered (m): a flat box is sampled as finely as it is thin, where that costs little, for
-/// there is an integral to compare with.
+/// The least step that is considered (m). A flat box is sampled as finely as it is thin where that costs little, that
+/// is, where there is an integral to compare with.
 fn finest(medium: &Extinction, diagonal: f32) -> f32 {
     let shortest = (medium.high - medium.low).min_element();
     let least = diagonal / FINEST;
@@ -134,8 +135,8 @@ fn mean(medium: &Extinction, of: impl Fn(&RaySegment, &mut Stream) -> f64) -> f6
     sum / SECTIONS as f64
 }
 
-/// Sections from random points of the medium's box, each with random numbers of its own: half of them to other such
-/// points, half of them of random length, in all orders of magnitude and directions, because a flat box is
+/// Sections from random points of the medium's box, each with random numbers of its own. Half of them lead to other
+/// such points. The other half have random lengths of all orders of magnitude and random directions: a flat box is
 /// crossed steeply too, and where extinction is strong only what is near is seen.
 fn sections(medium: &Extinction) -> impl Iterator<Item = (RaySegment, Stream)> + use<'_> {
     (0..SECTIONS).map(|index| {

@@ -3,7 +3,7 @@
 use super::{DistanceSample, Extinction};
 use crate::math::{Channels, RaySegment};
 
-/// Newton steps, each halving the bracket at least: enough for the last bit of an f32.
+/// Most steps, each of Newton or a bisection: enough for the last bit of an f32.
 const STEPS: u32 = 48;
 
 /// Optical depth along `segment`.
@@ -33,7 +33,7 @@ pub(super) fn sample_distance<L: Channels>(
     DistanceSample { spent: remaining, ..DistanceSample::exact(Some(t), depth, hero) }
 }
 
-/// Where the depth from `first` on is `remaining`, which lies below `whole`, that up to `last`.
+/// Where the depth from `first` on is `remaining`, which is below `whole`, the depth up to `last`.
 fn invert<L: Channels>(
     medium: &Extinction,
     segment: &RaySegment,

@@ -19,28 +19,29 @@ use crate::{
     volume::{Volume, VolumeModel},
 };
 
-/// A distance sampled along a segment: where it ended in a collision, or that it passed.
+/// A distance sampled along a segment: a collision, or none.
 #[derive(Clone, Copy, Debug)]
 pub struct DistanceSample<L> {
-    /// Where it collided (m); none where it passed the segment.
+    /// Distance of the collision (m); none where the flight passed the segment.
     pub collision: Option<f32>,
     /// Which of several media that overlap has collided; 0 where there is one.
     pub component: usize,
     /// Deterministic optical depth up to there: what the weights use (the stand-in where transmittance is random).
     pub depth: L,
-    /// Transmittance of every channel over the hero's, and the hero's sigma_t over that by which the collision was
-    /// sampled, if only in the mean: with sigma_t at the collision over the hero's, the factor of the throughput.
+    /// Transmittance of every channel over the hero's, times the hero's sigma_t over the one that sampled the
+    /// collision, exactly or in the mean. This times sigma_t at the collision over the hero's is the factor of the
+    /// throughput.
     pub ratio: L,
     /// How much of the hero's remaining optical depth is used up.
     pub spent: f32,
 }
 
-/// What a medium leaves of the light that crosses a segment.
+/// What a medium leaves of light that crosses a segment.
 #[derive(Clone, Copy, Debug)]
 pub struct Attenuation<L> {
     /// Deterministic optical depth per channel, the same from either end: what the weights use.
     pub depth: L,
-    /// The fraction of radiance that remains: exp(-depth), or an unbiased random estimate of what it really is.
+    /// The fraction of radiance that remains: exp(-depth), or an unbiased random estimate of the true one.
     pub transmittance: L,
 }
 
@@ -112,7 +113,7 @@ impl DistanceSampler {
         }
     }
 
-    /// What crosses `segment`; none where it is certain that nothing does, or a random estimate of it is 0.
+    /// Attenuation along `segment`; none where transmittance is certain to be 0, or a random estimate of it is.
     #[inline]
     pub fn attenuation<L: Channels>(
         &self,
@@ -163,8 +164,8 @@ impl DistanceSampler {
         }
     }
 
-    /// The optical depth along `segment`, whose [`Self::depth`] is `depth`, by which forced collisions are drawn: the
-    /// `hero` channel's, or the stand-in where it is not known.
+    /// The optical depth along `segment` by which forced collisions are drawn: that of the `hero` channel in `depth`
+    /// (from [`Self::depth`]), or the stand-in where it is not known.
     pub fn forced_depth<L: Channels>(
         &self,
         medium: &Extinction,
@@ -178,9 +179,9 @@ impl DistanceSampler {
         }
     }
 
-    /// A collision of the `hero` channel in `segment` where its [`Self::forced_depth`] is `remaining`; none where
-    /// there is nothing to collide with. DistanceSample's ratio is that of the contribution to a density of
-    /// exp(-`remaining`) times the hero's sigma_t.
+    /// A collision of the `hero` channel in `segment` where its [`Self::forced_depth`] is `remaining`; none where there
+    /// is nothing to collide with. The ratio of the sample is the contribution over a density of exp(-`remaining`)
+    /// times the hero's sigma_t.
     pub fn force<L: Channels>(
         &self,
         medium: &Extinction,

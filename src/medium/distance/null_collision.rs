@@ -1,8 +1,9 @@
-//! Null-collision tracking: delta tracking for distances (Woodcock et al. 1965); for transmittance ratio tracking (Cramer
-//! 1978) or residual ratio tracking (Novak et al. 2014); all by what is known of the cells of a coarse lattice.
+//! Null-collision tracking: delta tracking for distances (Woodcock et al. 1965); ratio tracking (Cramer 1978) or
+//! residual ratio tracking (Novak et al. 2014) for transmittance. All use bounds and means in the cells of a coarse
+//! lattice.
 //!
-//! Unbiased for any bounded medium, and random: the weights of the balance heuristic use the depth of the lattice's
-//! means instead, the same for every strategy.
+//! It is unbiased for any bounded medium, but random. The weights of the balance heuristic therefore use the depth of
+//! the lattice's means, the same for every strategy.
 
 use super::{Attenuation, DistanceMethod, DistanceSample, Extinction};
 use crate::{
@@ -16,25 +17,25 @@ use crate::{
 pub struct NullCollision {
     method: DistanceMethod,
     cells: Coarse<Cell>,
-    /// All of the medium lies in them; the box around a turned grid is larger.
+    /// All of the medium's box lies in the cells; the box around a turned grid does not.
     covers: bool,
 }
 
 /// What is known of extinction in a cell (1/m).
 #[derive(Clone, Copy, Debug)]
 struct Cell {
-    /// The rate of tentative collisions of flights: no channel is more anywhere.
+    /// The rate of tentative collisions of flights: no channel exceeds it anywhere.
     majorant: f32,
-    /// That of estimates of transmittance: no channel is farther from its `control`.
+    /// The rate of tentative collisions of transmittance estimates: no channel is farther from its `control`.
     rate: f32,
     /// The mean of every channel.
     mean: Spectrum,
-    /// What estimates of transmittance need no collisions for: 0 in ratio tracking.
+    /// The control extinction, which transmittance estimates need no collisions for: 0 in ratio tracking.
     control: Spectrum,
 }
 
 impl Cell {
-    /// Of a cell like `summary`, times `scale`, where the control may exceed the least extinction by `reach`.
+    /// The cell of `summary` times `scale`; the control may exceed the least extinction by `reach`.
     fn new(summary: &Summary, scale: f32, reach: Option<f32>) -> Self {
         let (least, majorant) = (summary.least * scale, summary.most * scale);
         let mean = summary.mean * scale;
@@ -46,15 +47,15 @@ impl Cell {
     }
 }
 
-/// Estimates that fall below this go on with a probability of their own size over it.
+/// An estimate below this survives Russian roulette with the probability estimate / `ROULETTE`.
 const ROULETTE: f32 = 0.05;
 
-/// The stand-in is no deeper than this: flights that find a gap between dense voxels come through where the mean says
-/// that none do, and a density of 0 in their weights would lose them.
+/// The stand-in is no deeper than this. Flights through a gap between dense voxels arrive where the mean says that none
+/// do, and a density of 0 in their weights would lose them.
 const DEEPEST: f32 = 30.0;
 
-/// The control is the mean, but no more than so many collisions per cell above the least extinction: a line that finds
-/// a gap in dense matter would else have to make up for all that the mean takes away, by rare and huge estimates.
+/// The control is the mean, but at most so many collisions per cell above the least extinction. Otherwise a line
+/// through a gap in dense matter would make up for all that the mean takes away by rare and huge estimates.
 const MOST_TAKEN: f32 = 1.0;
 
 impl NullCollision {
@@ -69,7 +70,7 @@ impl NullCollision {
         Self { method, cells, covers: coarse.covers(medium.low, medium.high) }
     }
 
-    /// Which it is.
+    /// The method.
     pub fn method(&self) -> DistanceMethod {
         self.method
     }
@@ -85,8 +86,8 @@ impl NullCollision {
         self.cells.pieces_within(segment, [first.max(enters), last.min(leaves)])
     }
 
-    /// How many pieces an estimate of the transmittance of `segment` goes through, and about how many collisions it
-    /// has: none in pieces that it hardly reaches.
+    /// The number of pieces that a transmittance estimate of `segment` goes through, and the approximate number of its
+    /// collisions; none are counted in pieces that it hardly reaches.
     pub fn work(&self, medium: &Extinction, segment: &RaySegment) -> [f64; 2] {
         let (mut pieces, mut collisions, mut depth) = (0.0, 0.0, 0.0);
         for Piece { cell, first, last } in self.pieces(medium, segment) {
@@ -136,8 +137,8 @@ impl NullCollision {
         self.track(medium, flown, stream, difference).map_or(L::splat(0.0), |found| found.transmittance)
     }
 
-    /// Residual ratio tracking of `part` of extinction, which is linear in it: the control's share of the depth is known,
-    /// and what is left changes the estimate at collisions.
+    /// Residual ratio tracking of `part`, which is linear in extinction: the control's share of the depth is known, and
+    /// the residual changes the estimate at collisions.
     #[inline(always)]
     fn track<L: Channels>(
         &self,
@@ -153,7 +154,7 @@ impl NullCollision {
             let control = part(L::from_spectrum(*control));
             depth = depth + L::from_spectrum(*mean).scaled(last - first);
             let mut at = first;
-            // A cell without matter has no collisions: 0 < 0 is false, whatever depth remains.
+            // A cell without matter has no collisions: the comparison with 0 is false, whatever depth remains.
             while remaining < rate * (last - at) {
                 let step = remaining / rate;
                 at += step;
@@ -223,8 +224,8 @@ fn survivor<L: Channels>(estimate: L, stream: &mut Stream) -> Option<L> {
     (stream.uniform() * ROULETTE < size).then(|| estimate.scaled(ROULETTE / size))
 }
 
-/// The rate of forced collisions is at least this fraction of the majorant: so matter that the means of cells
-/// miss is found too.
+/// The rate of forced collisions is at least this fraction of the majorant, to find matter that the means of cells
+/// miss.
 const LEAST: f32 = 0.05;
 
 impl Cell {
@@ -242,8 +243,8 @@ impl NullCollision {
         self.pieces(medium, segment).map(|piece| rate(piece.cell) * (piece.last - piece.first)).sum()
     }
 
-    /// A collision where [`Self::forced_depth`] is `remaining`; what comes as far as that, and what collides there, is
-    /// estimated.
+    /// A collision where [`Self::forced_depth`] is `remaining`; its ratio contains an estimate of the transmittance up
+    /// to it.
     pub fn force<L: Channels>(
         &self,
         medium: &Extinction,

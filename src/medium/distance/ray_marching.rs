@@ -2,9 +2,8 @@
 //! homogeneous.
 //!
 //! The cuts divide the whole chord of the line through the medium's box, wherever a walk on it starts or ends: both
-//! directions of a segment see the same intervals, so that T(x, y) = T(y, x), and a flight is sampled from
-//! the same depths that connections use. What is biased is the transmittance alone: at vertices the medium
-//! has its own coefficients.
+//! directions of a segment see the same intervals, so that T(x, y) = T(y, x), and a flight is sampled from the same
+//! depths that connections use. Only the transmittance is biased: at vertices the medium has its own coefficients.
 
 use super::{DistanceSample, Extinction};
 use crate::math::{Channels, RaySegment, Vec3, boxes};
@@ -29,7 +28,7 @@ struct Intervals {
     until: u32,
 }
 
-/// One of them.
+/// One of these intervals.
 struct Interval {
     /// t of its middle.
     middle: f32,
@@ -101,7 +100,7 @@ impl RayMarching {
     }
 }
 
-/// A collision sampled by the interval's `sigma_t`, at a point that has its own.
+/// A collision sampled by the interval's `sigma_t`, at a point with its own coefficient.
 #[inline]
 fn landed<L: Channels>(
     medium: &Extinction,
@@ -116,7 +115,7 @@ fn landed<L: Channels>(
     DistanceSample { ratio: sample.ratio.scaled(own / sigma_t.hero(hero)), ..sample }
 }
 
-/// The range of t, before 0 and beyond the segment's end too, in which its line is in the box; at least `within`.
+/// The range of t in which the segment's line is in the box, also before 0 and beyond its end; at least `within`.
 #[inline]
 fn chord(segment: &RaySegment, low: Vec3, high: Vec3, within: [f32; 2]) -> [f32; 2] {
     let (origin, direction) = (segment.origin.as_dvec3(), segment.direction.as_dvec3());

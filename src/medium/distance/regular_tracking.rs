@@ -1,4 +1,4 @@
-//! Exact grids: along a ray the interpolant is a cubic in every cell; its depth is found and inverted cell by cell.
+//! Exact grids: along a ray the interpolant is a cubic in every cell. Depths are computed and inverted cell by cell.
 
 use super::{DistanceSample, Extinction, closed_form};
 use crate::{

@@ -1,4 +1,4 @@
-//! Conductance maps (P03T sec. 6.3): how alike what neighbouring pixels show is, from 0 to 1. It is kept as resistance,
+//! Conductance maps (P03T sec. 6.3): the similarity of neighbouring pixels, from 0 to 1. It is stored as resistance,
 //! -ln of it: resistances in a row add.
 
 use super::sight::{FirstSurface, Sight};
@@ -12,9 +12,10 @@ mod unit {
     pub(super) const DEPTH: f32 = 0.02;
     /// Of albedos.
     pub(super) const ALBEDO: f32 = 0.1;
-    /// Of what media hide: they fade, and take few pixels. A tenth of this took four times the error among cubes in fog.
+    /// Of the opacity of media. Media fade slowly and need few pixels: a tenth of this unit gave four times the error
+    /// among cubes in fog.
     pub(super) const OPACITY: f32 = 0.5;
-    /// Of where they do, relative.
+    /// Of the nearness of media, relative.
     pub(super) const NEARNESS: f32 = 0.5;
 }
 
@@ -66,9 +67,9 @@ impl Maps {
         if second - first == 1 && second % self.width != 0 { self.across[first] } else { self.down[first] }
     }
 
-    /// Shows `visit` the pixels that the line between the middles of two pixels passes, the first one left out, each with the
-    /// resistance of the step to it. Where the line passes a corner, it is the greater one of the two ways around
-    /// (P03T fig. 6.5).
+    /// Shows `visit` the pixels on the line between the middles of two pixels, without the first, each with the
+    /// resistance of the step to it. Where the line passes a corner, this is the greater resistance of the two ways
+    /// around (P03T fig. 6.5).
     pub(super) fn walk(&self, from: usize, to: usize, mut visit: impl FnMut(usize, f32)) {
         let place = |pixel: usize| [pixel % self.width, pixel / self.width].map(|x| x as i64);
         let ([x, y], [to_x, to_y]) = (place(from), place(to));
@@ -101,8 +102,8 @@ impl Maps {
     }
 }
 
-/// -ln of the product of the maps' conductances exp(-(difference / unit)^2). Surfaces behind a medium count as far as they
-/// are seen through it.
+/// -ln of the product of the maps' conductances exp(-(difference / unit)^2). Surfaces behind a medium count by its
+/// transparency.
 fn resistance(a: &Sight, b: &Sight) -> f32 {
     let square = |difference: f32, unit: f32| (difference / unit).powi(2);
     let seen = 1.0 - a.opacity.min(b.opacity);
@@ -133,7 +134,7 @@ fn off_plane(a: &FirstSurface, b: &FirstSurface) -> f32 {
     off / a.distance.min(b.distance).max(f32::MIN_POSITIVE)
 }
 
-/// How different the first mean free paths are, over the longer nearness, as far as media hide anything.
+/// Difference of the first mean free paths, over the longer nearness, weighted by how much media hide.
 fn recession(a: &Sight, b: &Sight) -> f32 {
     let nearest = a.nearness.max(b.nearness);
     if nearest > 0.0 { (a.opacity * a.nearness - b.opacity * b.nearness).abs() / nearest } else { 0.0 }

@@ -58,7 +58,7 @@ impl Mesh {
         self.triangles.vertices().map(|vertex| vertex.data().radiance)
     }
 
-    /// Adds a pixel that was not there, as found near `hint` if that is there.
+    /// Adds a pixel that was not shaded yet; `hint` is a shaded pixel near it.
     pub(super) fn insert(&mut self, pixel: usize, radiance: Spectrum, hint: Option<usize>) {
         let place = [pixel % self.width, pixel / self.width].map(|x| x as i64);
         let shaded = Shaded { pixel, place, radiance };
@@ -90,8 +90,8 @@ impl Mesh {
         vertex.into_iter().flat_map(|vertex| vertex.out_edges().map(|edge| edge_of(edge.from(), edge.to())))
     }
 
-    /// Makes an edge between two shaded pixels, which stays; nothing where it would cross one that stays. The pixels whose
-    /// edges may be others now.
+    /// Makes a permanent edge between two shaded pixels, unless it would cross a permanent one. Returns the pixels
+    /// whose edges may have changed.
     pub(super) fn constrain(&mut self, [a, b]: Edge) -> Vec<usize> {
         let Some((from, to)) = self.vertices[a as usize].zip(self.vertices[b as usize]) else {
             return Vec::new();
@@ -106,8 +106,8 @@ impl Mesh {
         around
     }
 
-    /// The picture: shaded pixels as they are, others as the corners of their triangle, by Gouraud's weights (P03T sec. 6.4)
-    /// times how alike they are: edges of what is seen stay sharp where triangles reach across.
+    /// The picture. Shaded pixels keep their radiance; others interpolate the corners of their triangle by Gouraud's
+    /// weights (P03T sec. 6.4) times their similarity. Outlines stay sharp where triangles reach across.
     pub(super) fn paint(&self, maps: &Maps) -> Vec<Spectrum> {
         let faces: Vec<[Shaded; 3]> =
             self.triangles.inner_faces().map(|face| face.vertices().map(|vertex| *vertex.data())).collect();
@@ -146,10 +146,10 @@ impl Mesh {
     }
 }
 
-/// What a corner counts for that shows nothing like the pixel: where no corner does, the weights are Gouraud's again.
+/// Least similarity of a corner: where all corners are unlike the pixel, the weights are Gouraud's again.
 const LEAST: f32 = 1e-4;
 
-/// The mean of the corners, those that show the same as the pixel more than others.
+/// The mean of the corners, weighted by their similarity to the pixel.
 fn blended(pixel: usize, corners: &[Shaded; 3], weights: [f32; 3], maps: &Maps) -> Spectrum {
     let (mut sum, mut all) = (Spectrum::ZERO, 0.0);
     for (corner, weight) in corners.iter().zip(weights).filter(|(_, weight)| *weight > 0.0) {

@@ -1,8 +1,8 @@
-//! Progressive pictures (P03T ch. 6): few pixels are shaded, those that conductance maps and what is already shaded say
-//! most about, and the others are interpolated. A biased preview, of any estimator that shades pixel by pixel: light
-//! subpaths that are seen by the lens come down anywhere, and have no part in it.
+//! Progressive pictures (P03T ch. 6): only the most informative pixels, by conductance maps and the pixels shaded so
+//! far, are shaded; the others are interpolated. This is a biased preview for any estimator that shades pixel by pixel.
+//! Connections of light subpaths to the lens are left out, for they hit any pixel.
 //!
-//! Pixels are chosen in batches, each from what the batches before have shown: the picture does not depend on threads.
+//! Pixels are chosen in batches, each by the results of the batches before: the picture does not depend on threads.
 
 mod conductance;
 mod mesh;
@@ -76,7 +76,7 @@ impl Progressive {
     }
 }
 
-/// What became of it.
+/// Statistics of a finished picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shaded {
     /// By which method.
@@ -91,16 +91,17 @@ pub struct Shaded {
     pub shading: Duration,
 }
 
-/// Pixels of a batch, at least, as far as there are edges; and of later ones a part of what is shaded by then.
+/// Least pixels of a batch, if there are enough edges; later batches have this part of the pixels shaded by then; and
+/// most pixels of a batch.
 const BATCH: usize = 64;
 const BATCH_PART: usize = 16;
 const LARGEST_BATCH: usize = 1024;
-/// Pixels that share light subpaths, which are as many.
+/// Pixels that share light subpaths; there are as many light subpaths.
 const GROUP: usize = 16;
 
-/// Makes a progressive picture of `scene` on `film`, whose sides are two pixels or longer, and exact alpha and `layers` of
-/// surfaces with it. Each pixel that is shaded takes the samples of the budget of `settings`, which has their number; what
-/// its time leaves undone is interpolated. With `fog`, pixels are shaded by that preview.
+/// Makes a progressive picture of `scene` on `film`, whose sides are two pixels or longer, with exact alpha and
+/// `layers` of surfaces. Each shaded pixel takes the number of samples in the budget of `settings`, which must have
+/// one; pixels for which the time is too short are interpolated. With `fog`, pixels are shaded by that preview.
 pub fn run(
     scene: &Scene,
     film: &Film,
@@ -131,7 +132,7 @@ struct Painter<'a, 's> {
     method: Method,
     /// Pixels to shade.
     goal: usize,
-    /// Of each of them.
+    /// Samples of each of them.
     samples: u64,
     started: Instant,
     maps: Maps,
@@ -147,7 +148,7 @@ struct Painter<'a, 's> {
     faults: Faults,
 }
 
-/// Pixels to shade together, each with one near it that is shaded; and the edges that they divide.
+/// Pixels to shade together, each with a shaded pixel near it; and the edges that they divide.
 #[derive(Default)]
 struct Batch {
     pixels: Vec<(usize, Option<usize>)>,
@@ -271,7 +272,8 @@ impl<'a, 's> Painter<'a, 's> {
         queue.add(mesh, maps, around.into_iter().chain(left));
     }
 
-    /// Makes edges of the pieces of outlines whose ends are shaded by now; the pixels whose edges may be others.
+    /// Makes edges of the pieces of outlines whose ends are shaded by now. Returns the pixels whose edges may have
+    /// changed.
     fn constrain(&mut self) -> Vec<usize> {
         let Self { mesh, outlines, .. } = self;
         let is_shaded = |pixel: u32| mesh.at(pixel as usize).is_some();

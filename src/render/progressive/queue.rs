@@ -1,4 +1,4 @@
-//! Which pixel comes next: edges in the order of how much may be hidden on them (P03T sec. 6.4).
+//! Which pixel comes next: edges ordered by how much they may hide (P03T sec. 6.4).
 
 use super::{
     conductance::Maps,
@@ -13,10 +13,10 @@ use std::{
     collections::{BinaryHeap, HashSet},
 };
 
-/// What is added to 1 - conductance, for shadows fall where nothing else changes: P03T has 0, which took six times the error in
+/// Added to 1 - conductance, for shadows fall where nothing else changes. P03T has 0, which gave six times the error in
 /// a picture of shadows on a wall (0.02 in its place; relMSE).
 const UNSEEN: f64 = 1.0;
-/// The luminance of a mean pixel over that of white, for which half the lightness is taken.
+/// The luminance of a mean pixel over that of white: half the lightness.
 const GREY: f32 = 0.18;
 
 /// An edge in the queue.
@@ -46,7 +46,7 @@ pub(super) struct Queue {
     queued: HashSet<Edge>,
     /// The luminance that is taken as white.
     white: f32,
-    /// Shaded pixels that it was found from.
+    /// Number of shaded pixels that it was found from.
     found_from: usize,
 }
 
@@ -56,8 +56,8 @@ impl Queue {
         Self { heap: BinaryHeap::new(), queued: HashSet::new(), white: 1.0, found_from: 0 }
     }
 
-    /// Adds `edges` of `mesh` that are not there yet. Whenever twice as many pixels are shaded, white is found anew, and all
-    /// edges are measured by it.
+    /// Adds `edges` of `mesh` that are not queued yet. Whenever the number of shaded pixels has doubled, finds white
+    /// anew and measures all edges by it.
     pub(super) fn add(&mut self, mesh: &Mesh, maps: &Maps, edges: impl Iterator<Item = Edge>) {
         if mesh.len() >= 2 * self.found_from {
             let mean = mesh.radiances().map(|radiance| radiance.luminance().max(0.0)).sum::<f32>()
@@ -78,7 +78,7 @@ impl Queue {
         }
     }
 
-    /// P03T sec. 6.4: e_measure, and [`UNSEEN`]. None of neighbours.
+    /// P03T sec. 6.4: e_measure, with [`UNSEEN`]; none for neighbours.
     fn measure(&self, mesh: &Mesh, maps: &Maps, [a, b]: Edge) -> Option<f64> {
         let (a, b) = (a as usize, b as usize);
         let place = |pixel: usize| [pixel % maps.width(), pixel / maps.width()];
@@ -104,13 +104,13 @@ impl Queue {
     }
 }
 
-/// CIELAB of a radiance, where that of this luminance is white.
+/// CIELAB of a radiance, relative to white of this luminance.
 fn lab_over(radiance: Spectrum, white: f32) -> Vec3 {
     lab((to_xyz(radiance) / (to_xyz(Spectrum::ONE) * white)).max(Spectrum::ZERO))
 }
 
-/// The pixel that divides an edge: halfway between its middle and where it is crossed by the greatest resistance
-/// (P03T sec. 6.4), or the nearest to that which is not `taken`; none where all of them are.
+/// The pixel that divides an edge: halfway between its middle and the step of greatest resistance (P03T sec. 6.4), or
+/// the nearest pixel that is not `taken`; none where all are.
 pub(super) fn division(maps: &Maps, [a, b]: Edge, taken: impl Fn(usize) -> bool) -> Option<usize> {
     let mut pixels = Vec::new();
     let (mut worst, mut at) = (0.0, None);

@@ -1,14 +1,14 @@
-//! The *regions method* (P03T sec. 6.5): where conductance is low the image is cut into regions, whose outlines are shaded
-//! first and become edges that stay.
+//! The *regions method* (P03T sec. 6.5): the image is cut into regions where conductance is low. Their outlines are
+//! shaded first and become permanent edges.
 
 use super::conductance::Maps;
 use std::collections::VecDeque;
 
 /// Neighbours of a higher resistance are of different regions: a conductance of one half.
 const BREAK: f32 = std::f32::consts::LN_2;
-/// Regions of fewer pixels are left to the edges: outlines would be all there is of them.
+/// Regions of fewer pixels are left to the edges: they would be nothing but outline.
 const LEAST_AREA: usize = 24;
-/// Pixels that one piece of an outline replaces, at most.
+/// Most pixels that one piece of an outline replaces.
 const LONGEST_PIECE: usize = 64;
 /// How far a piece may be from the pixels that it replaces (pixels).
 const TOLERANCE: f64 = 0.75;
@@ -99,7 +99,7 @@ impl Regions {
         self.neighbour(pixel, STEPS[direction % 4]).filter(|next| self.labels[*next] == label)
     }
 
-    /// All closed outlines, around regions and around what lies in them: the region and its pixels along the outline.
+    /// All closed outlines, around regions and around holes in them: the region and its pixels along the outline.
     fn loops(&self) -> Vec<(usize, Vec<usize>)> {
         let mut passed = vec![[false; 4]; self.labels.len()];
         let mut loops = Vec::new();
@@ -115,8 +115,8 @@ impl Regions {
         loops
     }
 
-    /// Follows the sides of pixels, the region on the right hand, from the side on the left of `pixel` in this direction back
-    /// to it.
+    /// Follows the sides of pixels with the region on the right, from the side on the left of `pixel` in this
+    /// `direction` until back at it.
     fn follow(&self, pixel: usize, direction: usize, passed: &mut [[bool; 4]]) -> Vec<usize> {
         let label = self.labels[pixel];
         let (mut at, mut pixels) = ((pixel, direction), vec![pixel]);

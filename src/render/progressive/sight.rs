@@ -1,5 +1,5 @@
-//! What one ray through the middle of a pixel sees of the scene, light aside: the false colours of P03T sec. 6.3
-//! (orientation, depth, material), and how much of a medium lies before them.
+//! What one ray through the middle of a pixel sees of the scene, apart from light: the false colours of P03T sec. 6.3
+//! (orientation, depth, material), and the medium before them.
 
 use crate::{
     bsdf::BsdfModel,
@@ -15,17 +15,17 @@ use crate::{
 
 /// Surfaces that a ray passes, or is mirrored or refracted by, before it gives up.
 const MOST_LEGS: u32 = 64;
-/// Halvings that find a mean free path: to a thousandth of the stretch that it ends in.
+/// Halvings that find a mean free path, to a thousandth of the stretch in which it ends.
 const HALVINGS: u32 = 10;
 
 /// What a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sight {
-    /// The first surface, smooth ones included; none where there is none.
+    /// The first surface, including smooth ones; none where there is none.
     pub first: Option<FirstSurface>,
     /// Shading normal of the surface that the ray ends at, behind mirrors and panes; 0 where there is none.
     pub last_normal: Vec3,
-    /// What that surface reflects, through what the ray has passed.
+    /// Albedo of that surface, times the transmission along the ray.
     pub albedo: Spectrum,
     /// The emitter that it is.
     pub emitter: Option<u32>,
@@ -68,8 +68,8 @@ impl Sight {
         nearness: 0.0,
     };
 
-    /// What `scene` shows at a film position (pixels), through the middle of the lens. Where surfaces or the program choose
-    /// at random, all pixels choose by the same numbers.
+    /// What `scene` shows at a film position (pixels), through the middle of the lens. Random choices use the same
+    /// numbers for all pixels.
     pub(super) fn of(scene: &Scene, film: Vec2, hide_emitters: bool) -> Self {
         let ray = scene.sensor.ray(film, Vec2::ZERO).ray;
         let mut stream = Stream::new(0, 0, 0, Purpose::Pilot);
@@ -106,7 +106,7 @@ impl Sight {
     /// Ends at `point`, seen from direction `incoming`.
     fn end(&mut self, scene: &Scene, point: &SurfacePoint, incoming: Vec3, through: Spectrum) {
         let wi = point.shading.to_local(incoming);
-        // Where the side that is seen is black, that of the other, as in the layer albedo.
+        // If the visible side is black, the albedo of the other side, as in the layer albedo.
         let albedo_of = |wi: Vec3| scene.at(point, |bsdf, uv| bsdf.albedo(uv, wi));
         let faced = albedo_of(wi);
         let albedo = if faced == Spectrum::ZERO { albedo_of(vec3(wi.x, wi.y, -wi.z)) } else { faced };
@@ -123,7 +123,7 @@ struct Veil {
     length: f32,
     /// Optical depth, the mean of the channels.
     depth: f32,
-    /// How far the last medium reached, or the depth 1 in it (m).
+    /// Distance at which the last medium ended or the depth reached 1 in it (m).
     reach: f32,
 }
 
@@ -146,7 +146,7 @@ impl Veil {
 /// Optical depth of the first `length` metres of a stretch.
 fn depth(medium: &Medium, stretch: &RaySegment, length: f32) -> f32 {
     let depth = medium.quick_depth(&RaySegment { length, ..*stretch });
-    // Where nothing goes on for ever, its depth is no number.
+    // An endless stretch of nothing has the depth NaN.
     ((depth.x + depth.y + depth.z) / 3.0).max(0.0)
 }
 

@@ -7,23 +7,23 @@ use crate::{
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// An image is black if light does not come in more than this part of the samples.
+/// An image is black if at most this part of the samples finds light.
 const RAREST: f64 = 1e-3;
 
-/// The passes of one half, over the image and layers of it: sums and means of these follow those of the image. They end
+/// The passes of one half, over the image and its layers. Sums and means of layers follow those of the image, and end
 /// with its pixels.
 #[derive(Clone, Debug)]
 pub(in crate::render) struct Half {
     pub passes: u64,
     /// Sums over passes while a pixel is active.
     pub camera: Vec<DVec3>,
-    /// Of squares of what a pass contributes, light subpaths included.
+    /// Sums of the squares of a pass's contributions, including light subpaths.
     pub squares: Vec<DVec3>,
     /// Sums over all passes.
     pub light: Vec<DVec3>,
-    /// Squared relative error as this half's samples estimate it, kept once it is small enough.
+    /// Squared relative error as estimated by this half's samples, kept once it is small enough.
     pub errors: Vec<f64>,
-    /// The pixel has converged by this half.
+    /// This half says that the pixel has converged.
     pub content: Vec<bool>,
     /// Mean luminance of the image; 0 before it is known.
     pub mean: f64,
@@ -93,12 +93,12 @@ impl Half {
         self.judge_black(limits);
     }
 
-    /// Pixels without any light yet have no variance to judge by. They end with the last of the others, or in an image
-    /// that is all black, after enough samples.
+    /// Pixels without any light yet have no variance to judge by. They end with the last of the others or, if the whole
+    /// image is black, after enough samples.
     fn judge_black(&mut self, limits: &Limits) {
         let is_black = |pixel: usize| self.squares[pixel] == DVec3::ZERO;
         let pixels = || 0..self.content.len();
-        // What has no variance, such as an emitter in view, does not show that light was found elsewhere.
+        // A pixel without variance, such as an emitter in view, does not show that light was found elsewhere.
         let light_was_found = pixels().any(|pixel| !is_black(pixel) && self.errors[pixel] > 0.0);
         let waited = light_was_found || self.passes >= limits.passes_without_light;
         if waited && pixels().all(|pixel| is_black(pixel) || self.content[pixel]) {
@@ -106,7 +106,7 @@ impl Half {
         }
     }
 
-    /// Squared relative error that the mean over both halves has at a pixel, the greatest of its channels.
+    /// Squared relative error of the mean over both halves at a pixel; the greatest of its channels.
     fn error(&self, pixel: usize) -> f64 {
         let (mean, variance) = self.moments(pixel);
         if !mean.is_finite() {
@@ -117,7 +117,7 @@ impl Half {
         of(0).max(of(1)).max(of(2))
     }
 
-    /// Neighbours are checked as well: a few samples may all have missed what makes a pixel's variance.
+    /// Neighbours are checked as well: a few samples may all have missed the cause of a pixel's variance.
     fn is_calm(&self, pixel: usize, width: usize, limits: &Limits) -> bool {
         self.squares[pixel] != DVec3::ZERO
             && self.errors[pixel].max(self.around(pixel, width)) <= limits.squared_error
@@ -160,22 +160,22 @@ impl Half {
     }
 }
 
-/// What ends a pixel, after some number of passes.
+/// The limits at which a pixel ends, after some number of passes.
 pub(in crate::render) struct Limits {
-    /// Of the relative error's standard deviation.
+    /// Square of the limit on the relative error's standard deviation.
     squared_error: f64,
     /// Passes of a half without any light that make an image black.
     passes_without_light: u64,
 }
 
 impl Limits {
-    /// Student's t makes up for variances that are estimates themselves (P03T A.2.3).
+    /// Student's t accounts for variances that are themselves estimates (P03T A.2.3).
     pub(crate) fn after(passes: u64, precision: Precision) -> Self {
         let Precision { error, confidence } = precision;
         let tail = 0.5 * (1.0 - confidence);
         let t = StudentsT::new(0.0, 1.0, (passes - 1) as f64).map_or(f64::INFINITY, |t| -t.inverse_cdf(tail));
-        // With this many passes, light that comes in more than a thousandth of all samples of every pixel has shown
-        // itself somewhere with probability `confidence`, even if there were only one pixel.
+        // After this many passes, light in more than a thousandth of every pixel's samples has shown itself with
+        // probability `confidence`, even in an image of one pixel.
         let unseen = (1.0 - confidence).ln() / (-RAREST).ln_1p();
         Self { squared_error: (error / t).powi(2), passes_without_light: unseen.ceil() as u64 }
     }

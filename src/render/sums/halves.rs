@@ -16,12 +16,12 @@ use std::time::Duration;
 
 /// Passes of a half before it is first examined: variances of fewer are too uncertain.
 pub(in crate::render) const FIRST_LOOK: u64 = 16;
-/// Samples of the whole image in a half before then: pixels that have few neighbours, or none, cannot tell from them that they
+/// Least samples of the whole image in a half before then: pixels with few neighbours cannot see by these that they
 /// lack rare light.
 const FIRST_SAMPLES: u64 = 1024;
 
-/// What a render to a precision knows: two halves of whole passes, and the blocks done of one more. From it the render
-/// goes on as if it had never stopped.
+/// The state of a render to a precision: two halves of whole passes, and the finished blocks of one more. A render
+/// resumes from it as if it had never stopped.
 #[derive(Clone, Debug)]
 pub struct Halves {
     pub(in crate::render) precision: Precision,
@@ -32,7 +32,7 @@ pub struct Halves {
     pub(in crate::render) samples: Vec<u32>,
     /// The unfinished pass.
     pub(in crate::render) pass: Pass,
-    /// How many of its blocks are done: the first ones.
+    /// Number of its finished blocks, which are the first ones.
     pub(in crate::render) blocks: usize,
     /// Time spent on all of it.
     pub(in crate::render) elapsed: Duration,
@@ -44,8 +44,8 @@ pub struct Halves {
 }
 
 impl Halves {
-    /// Nothing done yet, for an image of `film` that is to have this precision, and the `layers` of it that contributions
-    /// are sorted into.
+    /// Nothing done yet, for an image of `film` with this precision, and for so many `layers` that contributions are
+    /// sorted into.
     pub fn new(film: &Film, precision: Precision, layers: usize) -> Self {
         Self::of(
             [0; 2].map(|_| Half::new(film.len(), 1 + layers)),
@@ -113,10 +113,10 @@ impl Halves {
         self.blocks = 0;
     }
 
-    /// Ends what can be ended.
+    /// Ends the means of pixels that have converged.
     pub(in crate::render) fn look(&mut self) {
         let [first, second] = self.halves.each_ref().map(|half| half.passes);
-        // Where the budget ended between the halves they are not equal; this check is the last one then.
+        // The halves are unequal if the budget ended between them; then this check is the last one.
         let passes = first.min(second);
         if passes < 2 {
             return;
@@ -136,8 +136,7 @@ impl Halves {
         Progress { samples, passes, elapsed, noise: None, within: Some(self.share()), is_last }
     }
 
-    /// The mean of the halves; what there is of the first pass where there is no more. Of a plane: 0 is the image, those of
-    /// layers follow.
+    /// The mean of the halves, or the unfinished first pass, in a plane: 0 is the image, those of layers follow.
     pub(in crate::render) fn plane(&self, plane: usize) -> Vec<Spectrum> {
         if self.passes() == 0 {
             return self.pass.pixels(&self.division(), self.blocks, self.width, plane);
@@ -148,7 +147,7 @@ impl Halves {
         (0..self.active.len()).map(|pixel| value(first + pixel).as_vec3()).collect()
     }
 
-    /// The relative error of the mean, if both halves have passes and pixels see this much of emitters.
+    /// The relative error of the mean, if both halves have passes; `seen` tells what pixels see of emitters.
     pub(in crate::render) fn noise(&self, seen: &dyn Fn(usize) -> f64) -> Option<Noise> {
         if self.halves.iter().any(|half| half.passes == 0) {
             return None;

@@ -24,15 +24,15 @@ pub trait Picture {
     fn size(&self) -> (usize, usize);
 }
 
-/// What a render knows, from which it can go on.
+/// The state of a render, from which it can resume.
 pub trait Kept: Picture {
-    /// Samples of pixels; where some pixels need fewer, not all have all of them.
+    /// Samples of pixels; in a render to a precision some pixels have fewer.
     fn samples(&self) -> Samples;
     /// What a file of it holds.
     fn store(&self) -> Stored;
 }
 
-/// That of a render of either kind.
+/// The state of a render of either kind.
 #[derive(Clone, Debug)]
 #[expect(clippy::large_enum_variant, reason = "a render has one, whose arrays are far larger")]
 pub enum AnySums {

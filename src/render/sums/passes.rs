@@ -1,5 +1,5 @@
-//! An image that is being rendered: the sums of whole passes, and the blocks done of one more. From it a render goes on
-//! as if it had never stopped, and several of other samples make one.
+//! An image that is being rendered: the sums of whole passes, and the finished blocks of one more. A render resumes
+//! from it as if it had never stopped. Several of different samples merge into one.
 
 use super::samples::Samples;
 use crate::{
@@ -25,13 +25,13 @@ pub struct Sums {
     pub(in crate::render) pass: Pass,
     /// Its sample number.
     pub(in crate::render) sample: u64,
-    /// How many of its blocks are done: the first ones.
+    /// Number of its finished blocks, which are the first ones.
     pub(in crate::render) blocks: usize,
     /// Time spent on all of it.
     pub(in crate::render) elapsed: Duration,
     /// The relative error of whole passes, if it is known.
     pub(in crate::render) noise: Option<Noise>,
-    /// Of so many passes.
+    /// Number of passes that `noise` was estimated from.
     noted: u64,
     /// What went wrong on the way.
     pub(in crate::render) faults: Faults,
@@ -39,8 +39,8 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Nothing yet, for an image of `film`, and the `layers` of it that contributions are sorted into; with sums of products
-    /// where layers of moments or variances need them.
+    /// Nothing yet, for an image of `film` and so many `layers` that contributions are sorted into; with sums of
+    /// products where layers of moments or variances need them.
     pub fn new(film: &Film, with_products: bool, layers: usize) -> Self {
         let accumulator =
             if with_products { Accumulator::with_products } else { Accumulator::new }(film.len());
@@ -95,7 +95,7 @@ impl Sums {
         true
     }
 
-    /// Leaves out the blocks of an unfinished pass; which fraction of a pass they are.
+    /// Drops the blocks of an unfinished pass; returns their fraction of a pass.
     pub fn drop_unfinished(&mut self) -> f64 {
         let fraction = self.unfinished();
         self.pass.clear();
@@ -103,7 +103,7 @@ impl Sums {
         fraction
     }
 
-    /// Goes on with the sample `sample`: what was done of another one is dropped.
+    /// Goes on with `sample`; drops the unfinished blocks of another one.
     pub(in crate::render) fn start(&mut self, sample: u64) {
         if self.sample != sample {
             self.pass = Pass::new(self.accumulator.len_of_planes());
@@ -124,22 +124,22 @@ impl Sums {
         }
     }
 
-    /// How far the render is that makes them, `elapsed` after it began.
+    /// The progress of the render that makes these sums, `elapsed` after it began.
     pub(in crate::render) fn progress(&self, elapsed: Duration, is_last: bool) -> Progress {
         let (passes, pixels) = (self.samples.count(), self.accumulator.len() as f64);
         let samples = ((passes as f64 + self.unfinished()) * pixels) as u64;
         Progress { samples, passes, elapsed, noise: self.noise, within: None, is_last }
     }
 
-    /// Estimates the noise again where a pass was added since. What is `seen` of emitters tells small lamps from rare
-    /// samples; without it, the noise is too large where there are some in view.
+    /// Estimates the noise again if a pass was added since. `seen` (emitters in view) tells small lamps from rare
+    /// samples; without it, the noise is too large where there are such lamps in view.
     pub(in crate::render) fn note_noise(&mut self, seen: &dyn Fn(usize) -> f64) {
         if self.noted != self.accumulator.passes() {
             (self.noise, self.noted) = (self.accumulator.noise(self.width, seen), self.accumulator.passes());
         }
     }
 
-    /// The same whether or not a pass was added: what was read from a file was estimated without a scene.
+    /// The same, even if no pass was added: noise read from a file was estimated without a scene.
     pub(in crate::render) fn note_last_noise(&mut self, seen: &dyn Fn(usize) -> f64) {
         self.noted = u64::MAX;
         self.note_noise(seen);
@@ -150,9 +150,9 @@ impl Sums {
         Blocks::new(self.accumulator.len(), 1, Sampler::Independent, 1.0)
     }
 
-    /// The mean. Pixels of the unfinished pass's blocks count it by the fraction of it that is done, as the light that
-    /// it found is the less certain the fewer blocks there are: no pixel is biased. Pixels of no sample at all take the
-    /// mean of those around them.
+    /// The mean. In its finished blocks, the unfinished pass is weighted by its finished fraction: the fewer the
+    /// blocks, the less certain the light that it found. No pixel is biased. Pixels without any sample take the mean of
+    /// those around them.
     pub fn pixels(&self) -> Vec<Spectrum> {
         self.plane(0)
     }

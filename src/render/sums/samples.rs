@@ -55,7 +55,7 @@ impl Samples {
         &self.0
     }
 
-    /// Number `index`, from 0, of those from `first` on that are missing.
+    /// The missing number of this `index` (from 0) among those from `first` on.
     pub fn missing(&self, first: u64, index: u64) -> u64 {
         let mut number = first + index;
         for range in self.0.iter().filter(|range| range.end > first) {

@@ -23,7 +23,7 @@ pub fn overlap(a: &Window, b: &Window) -> bool {
     })
 }
 
-/// The first part of `whole` that none of `parts` has, which do not overlap.
+/// The first part of `whole` that is in none of `parts`; these do not overlap.
 pub fn missing(whole: &Window, parts: &[Window]) -> Option<Window> {
     let ends = |axis: usize| {
         let ends = parts.iter().map(move |part| part.offset[axis] + part.size[axis]);

@@ -19,7 +19,7 @@ use crate::{
 pub(super) struct Body {
     shape: u32,
     form: Form,
-    /// The index within it over that around it, of a single plane that behind it over that before it; none of a mirror.
+    /// Index of refraction inside over outside, for a single plane behind over before; none for a mirror.
     ratio: Option<f64>,
 }
 
@@ -34,7 +34,7 @@ enum Form {
 }
 
 impl Body {
-    /// All of `scene` that are made of planes, balls or tubes.
+    /// All smooth shapes of `scene` that are made of planes, balls or tubes.
     pub(super) fn all(scene: &Scene) -> Vec<Self> {
         (0..scene.surfaces.len() as u32).filter_map(|shape| Self::of(scene, shape)).collect()
     }
@@ -81,7 +81,7 @@ impl Body {
         }
     }
 
-    /// Light that enters what the planes enclose by one of them and leaves it by another.
+    /// Chains that enter the body between the planes through one plane and leave it through another.
     fn across(
         flats: &[(Plane, Primitive)],
         ratio: f64,
@@ -110,7 +110,7 @@ impl Body {
         if height < 0.0 { self.ratio.unwrap_or(1.0) } else { 1.0 }
     }
 
-    /// The chain over these planes, by their numbers, if it meets their parts that are there.
+    /// The chain over these planes, given by their numbers, if there is one.
     fn over(
         flats: &[(Plane, Primitive)],
         links: &[(usize, Option<f64>)],
@@ -214,7 +214,7 @@ fn within(flat: &Flat, point: DVec3) -> Option<[f32; 2]> {
 }
 
 impl Form {
-    /// The form of a shape, and 1 where its shading normals point outwards, else -1; none of what is made of other things.
+    /// The form of a shape, and 1 where its shading normals point outwards, else -1; none for other shapes.
     fn of(shape: &Shape) -> Option<(Self, f64)> {
         match shape {
             Shape::Parallelograms(_) | Shape::Disk(_) => {

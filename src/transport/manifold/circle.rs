@@ -1,6 +1,6 @@
-//! Light in a plane, by way of a circle to a target. A ray, the normals of a ball that it meets and its centre lie in one plane,
-//! and so does the target; and light over a tube is looked at across that. The angle at which the light sets out is the only
-//! unknown. How far it then passes beside the target changes its sign at each solution.
+//! Light in a plane, by way of a circle to a target. For a ball, one plane contains the ray, the normals that it meets,
+//! the centre and the target; light over a tube is projected across its axis. The only unknown is the angle at which
+//! the light sets out. The signed distance by which it then misses the target changes sign at each solution.
 
 use super::{
     chain::{MOST, Target},
@@ -20,13 +20,13 @@ const CLOSEST: f64 = 1e-4;
 pub(super) struct Course {
     /// How often it meets the circle.
     pub(super) meetings: usize,
-    /// It comes to the first of these points from outside; and it leaves the last for outside.
+    /// Whether it comes to the first point from outside, and whether it leaves the last one to the outside.
     pub(super) outside: [bool; 2],
 }
 
 impl Course {
-    /// All between two ends, of which is said whether light can be outside there and whether it can be inside, over a surface that
-    /// transmits or does not.
+    /// All courses between two ends. For each end: whether light can be outside there, and whether it can be inside.
+    /// `transmits` is true for a surface that refracts.
     pub(super) fn all([first, last]: [[bool; 2]; 2], transmits: bool) -> impl Iterator<Item = Self> {
         let sides = [[true, true], [true, false], [false, true], [false, false]];
         let can_be = move |[a, b]: &[bool; 2]| first[usize::from(!a)] && last[usize::from(!b)];
@@ -55,7 +55,7 @@ impl Course {
         self.enters() || self.leaves()
     }
 
-    /// The index beyond over that before at point `number`, if light is refracted there.
+    /// Index of refraction beyond over before at point `number`; none if light is not refracted there.
     pub(super) fn refracts(&self, number: usize, inside: f64) -> Option<f64> {
         match (number == 0 && self.enters(), number + 1 == self.meetings && self.leaves()) {
             (true, _) => Some(inside),
@@ -98,7 +98,7 @@ pub(super) struct Flight {
     ratio: f64,
 }
 
-/// The angle, of not more than a right one, that has a sine; none if nothing has.
+/// The angle with this sine, at most a right one; none if there is no such angle.
 fn by_sine(sine: f64) -> Option<DVec2> {
     let square = 1.0 - sine * sine;
     (square >= 0.0).then(|| DVec2::new(square.sqrt(), sine))
@@ -109,7 +109,7 @@ fn opposite(angle: DVec2) -> DVec2 {
 }
 
 impl Round {
-    /// In the plane of the centre, to which all else is relative, the start and the target.
+    /// In the plane of the centre, the start and the target; positions are relative to the centre.
     pub(super) fn new(radius: f64, start: DVec3, target: Target, course: Course) -> Option<Self> {
         let along = start.try_normalize()?;
         let to = target.vector();
@@ -118,7 +118,7 @@ impl Round {
         Some(Self::within([along, across], radius, start, target, course))
     }
 
-    /// In the plane of these orthonormal vectors, to which all is projected; the first leads to the start.
+    /// In the plane of these orthonormal vectors, with everything projected to it; the first points to the start.
     pub(super) fn within(
         axes: [DVec3; 2],
         radius: f64,
@@ -142,7 +142,7 @@ impl Round {
     pub(super) fn ways(&self, flight: impl Fn(f64) -> Option<Flight>, found: &mut impl FnMut(f64, &Flight)) {
         let missed = |place: f64| self.missed(&flight(place)?).map(|[across, _]| across);
         Search { function: missed, is_periodic: self.is_inside() }.roots(&mut |place| {
-            // Unless it leads away from the target.
+            // Skips flights that lead away from the target.
             if let Some(flight) = flight(place)
                 && let Some([across, along]) = self.missed(&flight)
                 && along > 0.0
@@ -166,9 +166,9 @@ impl Round {
         missed.windows(2).filter(crosses).count()
     }
 
-    /// The angle with which a flight begins at `place` in [-1, 1]: from inside that of its direction; from outside that in the
-    /// medium of less index, at which there is always one in the other. Close to the circle, what is almost along it is looked at
-    /// more closely.
+    /// The angle at which a flight begins at `place` in [-1, 1]. From inside it is the angle of its direction. From
+    /// outside it is the angle in the medium of lesser index: then the other medium always has one too. Close to the
+    /// circle, directions almost along it are sampled more finely.
     pub(super) fn begin(&self, place: f64) -> DVec2 {
         let Self { width, range, .. } = *self;
         let angle = if self.is_inside() {
@@ -201,7 +201,8 @@ impl Round {
         Some(Flight { angles, incidence, ratio })
     }
 
-    /// The angle of the first point, and that of incidence there, which is that of refraction if the light enters by a `ratio`.
+    /// The angle of the first point, and the angle of incidence there: the refracted one if the light enters with this
+    /// `ratio`.
     fn start_outside(&self, begin: DVec2, ratio: f64) -> Option<(DVec2, DVec2)> {
         let (before, after) =
             if ratio < 1.0 { (by_sine(begin.y * ratio)?, begin) } else { (begin, by_sine(begin.y / ratio)?) };
@@ -211,8 +212,8 @@ impl Round {
         Some((opposite(seen).rotate(from_seen), after))
     }
 
-    /// How far the line along which light leaves the circle lies beside the target, and how far ahead that is, over its distance;
-    /// none if light does not leave.
+    /// How far the line on which light leaves the circle passes beside the target, and how far ahead the target is,
+    /// both over its distance; none if light does not leave.
     fn missed(&self, flight: &Flight) -> Option<[f64; 2]> {
         let Flight { angles, incidence, ratio } = *flight;
         let angle = angles[self.course.meetings - 1];

@@ -1,5 +1,6 @@
-//! Chains over planes. Light that crosses planes, or is reflected by one, takes the points of least optical length (Fermat).
-//! That length is a convex function of them: there is one such path at most, and Newton's method finds it.
+//! Chains over planes. Light that crosses planes, or is reflected by one, takes the points of least optical length
+//! (Fermat). This length is a convex function of the points: there is at most one such path, and Newton's method finds
+//! it.
 
 use super::chain::{Target, refracted};
 use crate::math::{DMat3, DMat4, DVec3};
@@ -7,11 +8,11 @@ use glam::DVec4;
 
 /// Most steps of Newton's method; six are common.
 const STEPS: usize = 50;
-/// Distance of two points, over that of the first from the start, that is none.
+/// Distance of two points, over that of the first from the start, below which they meet.
 const MEETING: f64 = 1e-3;
 /// Most times that a step is halved.
 const HALVINGS: i32 = 20;
-/// Part of what a step promises that it must gain.
+/// Least part of the predicted decrease that a step must achieve.
 const ENOUGH: f64 = 1e-4;
 /// Sine of the angle by which the law of refraction may be missed.
 const MISSED: f64 = 1e-11;
@@ -42,8 +43,9 @@ impl Plane {
 /// Most planes of a way.
 const MOST: usize = 2;
 
-/// The points of two planes, whose normals point away from what lies between them, where light crosses them that comes `from`
-/// a point and leaves in unit `direction`; `ratio` is the index between them over that around. There is one way back.
+/// The points where light crosses two planes, coming `from` a point and leaving in unit `direction`. Normals point away
+/// from what lies between the planes; `ratio` is the index there over that around. Refraction backwards from
+/// `direction` is unique.
 pub(super) fn between(
     from: DVec3,
     [first, last]: [Plane; 2],
@@ -63,8 +65,8 @@ pub(super) fn between(
 /// A way from a point over one or two planes to a target.
 pub(super) struct Way<'a> {
     pub(super) from: DVec3,
-    /// The normals of two point away from what lies between them. Of two that meet, some ways are not found
-    /// where the index between them is close to that around, see the tests.
+    /// Normals of two planes point away from what lies between them. Where two planes meet, some paths are not found if
+    /// the index between them is close to that around, see the tests.
     pub(super) planes: &'a [Plane],
     /// Of the media before each plane, and behind the last.
     pub(super) indices: &'a [f64],
@@ -74,11 +76,11 @@ pub(super) struct Way<'a> {
 /// A straight part of a way.
 #[derive(Clone, Copy, Default)]
 struct Part {
-    /// Its optical length; towards infinity how far it lies ahead.
+    /// Its optical length; for a target at infinity, how far it lies ahead.
     length: f64,
-    /// How that changes with its end.
+    /// Gradient of the length by its end.
     gradient: DVec3,
-    /// How the gradient does.
+    /// Hessian of the length by its end.
     hessian: DMat3,
 }
 
@@ -114,7 +116,7 @@ struct Path {
 }
 
 impl Way<'_> {
-    /// The points on the planes; none where light cannot go this way. What follows the last plane's is of no meaning.
+    /// The points on the planes; none where light cannot go this way. Entries after the last plane's are meaningless.
     pub(super) fn solve(&self) -> Option<[DVec3; MOST]> {
         let mut at = DVec4::ZERO;
         let mut path = self.path(at)?;
@@ -131,15 +133,16 @@ impl Way<'_> {
         None
     }
 
-    /// True where two points all but meet outside of what the planes enclose: where no light goes from one plane to another, the
-    /// shortest way leads over the line in which they meet. There the length has an edge, at which Newton's method stays.
+    /// True where two points nearly meet outside the body between the planes. Where no light goes from one plane to the
+    /// other, the shortest path crosses the line in which they meet: the length has an edge there, and Newton's method
+    /// gets stuck.
     fn is_over_edge(&self, [p, q]: &[DVec3; MOST]) -> bool {
         let [first, last] = self.planes else { return false };
         p.distance(*q) < MEETING * p.distance(self.from) && (last.height(*p) > 0.0 || first.height(*q) > 0.0)
     }
 
-    /// A point along `step` where the way is shorter by enough. Close to the end, lengths differ by less than they are rounded by,
-    /// but gradients do not.
+    /// A point along `step` where the path is enough shorter. Near the minimum, lengths differ by less than their
+    /// rounding error, but gradients do not.
     fn shorter(&self, at: DVec4, path: &Path, step: DVec4) -> Option<(DVec4, Path)> {
         let promised = path.gradient.dot(step);
         (0..HALVINGS).find_map(|halvings| {
@@ -177,7 +180,7 @@ impl Way<'_> {
         }))
     }
 
-    /// 1 for coordinates that there are not, so that it can be inverted.
+    /// The diagonal is 1 for unused coordinates, so that the matrix can be inverted.
     fn hessian(&self, parts: &[Part; MOST + 1]) -> DMat4 {
         let entry = |a: usize, b: usize| {
             let (Some((i, one)), Some((j, other))) = (self.axis(a), self.axis(b)) else {

@@ -1,7 +1,8 @@
-//! Connections by way of smooth surfaces. Light of a point or of a single direction which smooth glass or a mirror sends to a
-//! vertex comes there along single paths, which no walk meets by chance; where the camera sees that vertex by way of smooth
-//! surfaces alone, no other strategy makes the path. The paths over one shape are solved for: all over a plane, a ball or a tube, of up to
-//! [`chain::MOST`] points there. They count as connections of s >= 2 light vertices, with the weight 1.
+//! Connections by way of smooth surfaces. Smooth glass and mirrors send the light of a point or of a single direction
+//! to a vertex along isolated paths, which no walk meets by chance. Where the camera sees this vertex by way of smooth
+//! surfaces alone, no other strategy makes the path. This module solves for the paths over one shape: all paths over a
+//! plane, a ball or a tube with up to [`chain::MOST`] points there. They count as connections of s >= 2 light vertices,
+//! with the weight 1.
 
 mod bodies;
 mod chain;
@@ -37,15 +38,15 @@ use crate::{
 use bodies::Body;
 use chain::{Chain, Link, Target};
 
-/// The lamps of a scene whose light no walk meets by chance, and the smooth shapes that it is followed over.
+/// The lamps of a scene that no walk can hit, and the smooth shapes to connect over.
 pub(super) struct Manifold {
     bodies: Vec<Body>,
-    /// Their indices, and where their light comes from.
+    /// Their indices, and the point or direction that their light comes from.
     lamps: Vec<(usize, Target)>,
 }
 
 impl Manifold {
-    /// That of `scene`; none where there are no such lamps or shapes.
+    /// The lamps and shapes of `scene`; none where there are no such lamps or no such shapes.
     pub(super) fn of(scene: &Scene) -> Option<Self> {
         let lamps = scene.lights.all.iter().enumerate();
         let lamps: Vec<_> = lamps.filter_map(|(index, lamp)| Some((index, target(lamp)?))).collect();
@@ -54,7 +55,7 @@ impl Manifold {
     }
 }
 
-/// A point, or a single direction.
+/// The point or the single direction that the light of `lamp` comes from; none for other lamps.
 fn target(lamp: &Light) -> Option<Target> {
     match &lamp.emitter.kind {
         Kind::Point(_) => Some(Target::Point(lamp.position.as_dvec3())),
@@ -64,14 +65,14 @@ fn target(lamp: &Light) -> Option<Target> {
     }
 }
 
-/// One of several, all of them alike.
+/// One of several, uniformly.
 fn draw<'a, T>(all: &'a [T], stream: &mut Stream) -> &'a T {
     let number = (stream.uniform() * all.len() as f32) as usize;
     &all[number.min(all.len() - 1)]
 }
 
 impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
-    /// Connects `vertex` to a lamp by way of a smooth shape, one of each drawn at random, if nothing else makes such paths.
+    /// Connects `vertex` to a random lamp by way of a random smooth shape, unless another strategy makes such paths.
     #[inline(never)]
     pub(super) fn connect_bent(
         &mut self,
@@ -91,7 +92,7 @@ impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
         });
     }
 
-    /// Connects `vertex` to the lamp, which was chosen with some probability, along a chain.
+    /// Connects `vertex` along a chain to `lamp`; lamp and shape were drawn with probability `chosen`.
     fn connect_over(
         &mut self,
         body: &Body,
@@ -134,7 +135,7 @@ impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
         let origin = camera.origin?;
         let towards = target.seen_from(origin.as_dvec3()).as_vec3();
         let light = connect::emitter_end(self.estimator, sample, camera.medium, origin, -towards);
-        // Nothing else makes the path.
+        // No other strategy makes the path.
         let light = End { pdf_fwd: 0.0, others_before: P::MisSums::none(), ..light };
         let strategy = self.estimator.strategy(StrategyKind::Connection);
         if P::INFINITE && sample.point.is_infinite() {
@@ -147,7 +148,7 @@ impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
     }
 }
 
-/// The end of a walk that goes on along a chain, at its last point; none where something is in the way.
+/// The end of a walk extended along a chain to its last point; none where it is blocked.
 fn follow<P: Profile>(
     scene: &Scene,
     body: &Body,
@@ -172,7 +173,7 @@ fn follow<P: Profile>(
     Some(End { pdf_fwd: 0.0, others_before: none, beside: None, ..end })
 }
 
-/// From `point` the unit direction back to `origin`, the medium there, and what of radiance comes between them.
+/// The unit direction from `point` back to `origin`, the medium at `point`, and the transmittance between them.
 fn reach<P: Profile>(
     scene: &Scene,
     origin: Vec3,
@@ -189,7 +190,7 @@ fn reach<P: Profile>(
     Some((incoming, between.medium, between.transmittance))
 }
 
-/// What of radiance from `outgoing` goes on to `incoming`.
+/// The fraction of radiance from `outgoing` that the surface sends to `incoming`.
 fn lobe(
     scene: &Scene,
     point: &SurfacePoint,
@@ -200,10 +201,10 @@ fn lobe(
     let side = if link.ratio.is_some() { Side::Transmitted } else { Side::Reflected };
     let wi = point.shading.to_local(incoming);
     let (wo, coefficient) = scene.at(point, |bsdf, uv| bsdf.dirac(uv, wi, side, Transport::Radiance))?;
-    // Positions are rounded, and so is what they tell of grazing rays; a path on the wrong side is none.
+    // Positions are rounded, which matters at grazing angles. A path on the wrong side is rejected.
     let is_there = point.shading.to_local(outgoing).dot(wo) > 1.0 - ALIKE;
     is_there.then_some(coefficient)
 }
 
-/// 1 - cos of the greatest angle between a solution and what the surface does to the ray there.
+/// 1 - cos of the greatest angle between a solution and the ray that the surface reflects or refracts there.
 const ALIKE: f32 = 1e-3;

@@ -1,16 +1,16 @@
-//! The roots of a function of one unknown that is not there everywhere.
+//! The roots of a function of one unknown that is not defined everywhere.
 
 use std::f64::consts::PI;
 
-/// Parts of [-1, 1] at whose ends it is looked at first.
+/// Parts of [-1, 1] at whose ends the function is evaluated first.
 const STEPS: i32 = 32;
-/// Of each stretch where it is, if that is not everywhere.
+/// The same for each stretch where it is defined, if not everywhere.
 const STRETCH_STEPS: usize = 24;
 /// Parts of an interval in which it may have three roots.
 const CLOSER: i32 = 8;
-/// Steps to a root, or to an end of where the function is: 12 are common to the one.
+/// Most steps to a root, or to an end of a stretch; 12 are common for a root.
 const HALVINGS: usize = 50;
-/// A value that is none.
+/// Values up to this count as 0.
 const EXACT: f64 = 1e-12;
 /// Cuts of an interval that may hold two roots.
 const CUTS: usize = 24;
@@ -58,7 +58,7 @@ impl<F: Fn(f64) -> Option<f64>> Search<F> {
         }
     }
 
-    /// Places where the function is, one stretch of them after the other.
+    /// Places where the function is defined, stretch by stretch.
     fn stretches(&self) -> Vec<Vec<Place>> {
         let beyond = i32::from(self.is_periodic);
         let place = |step: i32| f64::from(2 * step) / f64::from(STEPS) - 1.0;
@@ -84,7 +84,7 @@ impl<F: Fn(f64) -> Option<f64>> Search<F> {
         there.map(part).collect()
     }
 
-    /// The function at places by the part of a stretch that lies before them.
+    /// The function at `count` + 1 places; `place` maps the part of the stretch before one to the place.
     fn places(&self, count: usize, place: impl Fn(f64) -> f64) -> Vec<Place> {
         let places = (0..=count).map(|step| place(step as f64 / count as f64));
         places.filter_map(|place| self.at(place)).collect()
@@ -111,7 +111,7 @@ impl<F: Fn(f64) -> Option<f64>> Search<F> {
         places.sort_by(|a, b| a.0.total_cmp(&b.0));
     }
 
-    /// The last place where the function is between `inside`, where it is, and `outside`.
+    /// The last place between `inside` and `outside` where the function is defined, as it is at `inside`.
     fn end(&self, mut inside: f64, mut outside: f64) -> f64 {
         for _ in 0..HALVINGS {
             let middle = 0.5 * (inside + outside);
@@ -120,7 +120,8 @@ impl<F: Fn(f64) -> Option<f64>> Search<F> {
         inside
     }
 
-    /// Where the function is closest to 0 between two places, on their side, if it may have roots there: golden sections.
+    /// A place between two of equal sign where the function has the other sign, by golden sections; none where it is
+    /// not found.
     fn nearest(&self, low: Place, high: Place) -> Option<Place> {
         let sign = low.1.signum();
         let value = |place: f64| (place, (self.function)(place).map_or(f64::INFINITY, |value| value * sign));

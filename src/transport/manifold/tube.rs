@@ -1,7 +1,7 @@
-//! Chains over the side of a round cylinder. Nothing turns light along the axis: of its unit direction times the index, the
-//! component along the axis stays. Across the axis light travels as if over a circle between media of effective indices
-//! sqrt(n^2 - k^2), where k is that component. Light of a single direction brings its k; towards a point each way across has
-//! the k by which it comes to the height of that.
+//! Chains over the side of a round cylinder. Let k be the axial component of light's unit direction times the index:
+//! reflection and refraction do not change it. Across the axis light travels as if over a circle between media of
+//! effective indices sqrt(n^2 - k^2). Light of a single direction has a known k; towards a point, each path across the
+//! axis has the k that brings it to the height of the point.
 
 use super::{
     chain::Target,
@@ -11,7 +11,7 @@ use crate::math::DVec3;
 use glam::DVec2;
 use std::cell::Cell;
 
-/// Most steps to a component along the axis.
+/// Most steps to find the slope along the axis.
 const STEPS: usize = 60;
 /// Part of a height that is none.
 const EXACT: f64 = 1e-14;
@@ -64,7 +64,8 @@ impl Tube {
         }
     }
 
-    /// Every way `from` a point to a target, by its points; `index` is that within over that around; none of a mirror.
+    /// The points of every path `from` a point to a target. `index` is that inside over that outside; none for a
+    /// mirror.
     pub(super) fn solve(
         &self,
         index: Option<f64>,
@@ -84,8 +85,8 @@ impl Tube {
     }
 }
 
-/// How steep light is: how far it goes along the axis over how far across, outside and inside; and the effective index inside over
-/// that outside.
+/// The slopes of light outside and inside (its distance along the axis over that across), and the effective index
+/// inside over that outside.
 #[derive(Clone, Copy)]
 struct Slopes {
     slopes: [f64; 2],
@@ -122,7 +123,7 @@ impl<'a> Climb<'a> {
         let along = out.try_normalize().unwrap_or_else(|| axis.any_orthonormal_vector());
         let axes = [along, axis.cross(along)];
         let round = Round::within(axes, radius, out, target.relative_to(base), course);
-        // The walls refract nothing that only they reflect.
+        // Light that is only reflected does not see the index.
         let indices = if course.is_refracted() { [1.0, index] } else { [1.0; 2] };
         let end = match target {
             Target::Point(point) => End::Height(axis.dot(point - from)),
@@ -147,7 +148,7 @@ impl<'a> Climb<'a> {
         });
     }
 
-    /// Unless it leads by the ends of the tube.
+    /// Reports a path, unless it misses the tube beyond its ends.
     fn report(&self, flight: &Flight, Slopes { slopes, .. }: Slopes, found: &mut impl FnMut(&[DVec3])) {
         let [first, next, _] = self.round.lengths(flight);
         let mut height = self.from + first * slopes[usize::from(!self.course.outside[0])];
@@ -189,7 +190,7 @@ impl<'a> Climb<'a> {
     /// Those by which it rises by `height`.
     fn rising(&self, begin: DVec2, height: f64) -> Option<Slopes> {
         let across = |ratio: f64| Some(self.across(&self.round.fly(begin, ratio)?));
-        // That from inside goes as far whatever its slope.
+        // From inside, the distance across does not depend on the slope.
         let known = if self.course.outside[0] { None } else { across(1.0) };
         let rise = |slope: f64| {
             let Slopes { slopes, ratio } = Slopes::of(slope, self.indices);
@@ -204,7 +205,8 @@ impl<'a> Climb<'a> {
     }
 }
 
-/// The slope by which light rises by `height`, near a `guess`: by secants, within what is known to be too flat and too steep.
+/// The slope at which light rises by `height`, near a `guess`: by secants between slopes known to be too flat and too
+/// steep.
 fn steep(rise: impl Fn(f64) -> Option<f64>, height: f64, guess: f64) -> Option<f64> {
     let (mut low, mut high) = (0.0, f64::INFINITY);
     let (mut before, mut slope) = ((0.0, -height), guess);
@@ -236,7 +238,7 @@ impl Slopes {
         Self { slopes: [along / outside, along / inside], ratio: inside / outside }
     }
 
-    /// Where it has this component `along` the axis; none if that is more than one of the media lets be.
+    /// Slopes for this component `along` the axis; none if it is too great for one of the media.
     fn along(along: f64, indices: [f64; 2]) -> Option<Self> {
         let [outside, inside] = indices.map(|index| (index * index - along * along).max(0.0).sqrt());
         let is_there = outside > 0.0 && inside > 0.0;

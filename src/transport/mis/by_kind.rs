@@ -1,5 +1,5 @@
-//! The balance heuristic with its sum split by kinds of strategies: from the samples of one set of counts, pilots tell how
-//! any other would do.
+//! The balance heuristic with its sum split by kind of strategy: from samples with one set of counts, pilots forecast
+//! the others.
 
 use super::sums::MisSums;
 use crate::{math::Channels, settings::heuristic::Heuristic, transport::strategy::StrategyKind};

@@ -1,5 +1,5 @@
-//! The sums of several heuristics side by side. Those that are there to be compared share one compiled estimator: the
-//! build takes less time, and they have less to keep of a strategy than the estimator has to do.
+//! The sums of several heuristics side by side. Heuristics that exist only for comparison share one compiled estimator:
+//! the build takes less time, and the extra sums are little work beside the rest of the estimator.
 
 use super::{maximum::Maximum, power::Power, sums::MisSums, uniform::Uniform};
 use crate::{math::Channels, settings::heuristic::Heuristic, transport::strategy::StrategyKind};

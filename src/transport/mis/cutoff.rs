@@ -3,7 +3,7 @@
 use super::sums::MisSums;
 use crate::{math::Channels, settings::heuristic::Heuristic, transport::strategy::StrategyKind};
 
-/// As many strategies as the longest path has, besides the one at hand.
+/// Number of strategies of the longest path, without the one at hand.
 const CAPACITY: usize = Heuristic::CUTOFF_EDGES as usize;
 
 /// n p of every strategy.

@@ -3,8 +3,8 @@
 use super::sums::MisSums;
 use crate::{math::Channels, settings::heuristic::Heuristic, transport::strategy::StrategyKind};
 
-/// Root of the sum of (n p)^2 over strategies: with the root it grows as n p does, and no path is too long or too
-/// dense for it that is not for the balance heuristic too.
+/// Root of the sum of (n p)^2 over strategies. With the root it scales like n p: it overflows only where the balance
+/// heuristic does too.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Power<L>(L);
 

@@ -12,24 +12,24 @@ use crate::{
 /// One way in which a forced flight ends.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ForcedEnd<L> {
-    /// As the weights see it: like one that was sampled without forcing.
+    /// The flight as the weights see it: as if sampled without forcing.
     pub flight: FreeFlight<L>,
-    /// Contribution over the density by which it was really sampled.
+    /// Contribution over the true density of its sample.
     pub share: Spectrum,
 }
 
 /// A forced flight.
 pub(crate) struct Forced<L> {
-    /// In the media, where there is something to collide with, and on what lies behind.
+    /// A collision in the media, where there is one, and the end behind them.
     pub ends: [Option<ForcedEnd<L>>; 2],
     /// See [`sure_depth`].
     pub sure_depth: L,
 }
 
-/// What lies behind while the ray is followed.
+/// What the ray has crossed so far.
 #[derive(Clone, Copy, Debug)]
 struct Unforced<L> {
-    /// Its ratio is to exp(-`spent`).
+    /// Its ratio is relative to exp(-`spent`).
     state: FlightState<L>,
     /// Estimate of the transmittance of media.
     through: L,
@@ -81,8 +81,8 @@ pub(crate) fn force<P: Profile>(
     Forced { ends: [collision, (behind.share.max_element() > 0.0).then_some(behind)], sure_depth }
 }
 
-/// Optical depth per channel of the media that `segment` crosses before the first surface that holds anything
-/// back: what a forced flight always follows. Never random: the same for all strategies.
+/// Optical depth per channel of the media that `segment` crosses before the first surface that holds anything back: the
+/// part that every forced flight crosses. It is never random, and the same for all strategies.
 pub(crate) fn sure_depth<P: Profile>(mut segment: Segment<'_>) -> P::Channels {
     let mut depth = P::Channels::splat(0.0);
     loop {
@@ -148,7 +148,8 @@ fn follow<'a, P: Profile>(
     }
 }
 
-/// A collision in one of `parts`, whose depth is `whole` in all: its depth is exponential, truncated there.
+/// A collision in one of `parts`, which have the depth `whole` together. Its depth is exponential, truncated at
+/// `whole`.
 fn collide<P: Profile>(
     parts: &[Part<'_, P::Channels>],
     whole: f32,

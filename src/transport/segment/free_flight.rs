@@ -17,7 +17,7 @@ pub(crate) struct FreeFlight<L> {
     pub interaction: Option<Interaction>,
     /// The medium at its end.
     pub medium: MediumIndex,
-    /// What lies behind it.
+    /// What it has passed.
     pub state: FlightState<L>,
 }
 
@@ -27,8 +27,8 @@ pub(crate) struct FlightState<L> {
     /// Optical depth per channel, the logarithms of null-passing probabilities included: the flight density
     /// in the weights is exp(-depth), times sigma_t at a collision.
     pub depth: L,
-    /// Contribution over the density by which the flight was really sampled, per channel. Profiles without
-    /// varying media have it from `depth`.
+    /// Contribution over the true density of the flight, per channel. Profiles without varying media compute it from
+    /// `depth`.
     pub ratio: L,
     /// Null transmittances over their passing probabilities; 1 where none was tinted.
     pub tint: Spectrum,
@@ -60,8 +60,8 @@ impl<L: Channels> FlightState<L> {
 pub(crate) enum Passed<L> {
     /// A part in one medium. Only profiles with emissive media show it.
     Medium(FlightPart<L>),
-    /// A point of a shape that emits: the flight reaches it whether it goes on or ends. Only profiles with nulls show
-    /// it; in others it always ends.
+    /// A point of a shape that emits, whether the flight goes on or ends there. Only profiles with nulls show it; in
+    /// others the flight always ends.
     Emitter(EmitterCrossing<L>),
 }
 
@@ -94,8 +94,8 @@ pub(crate) struct FlightPart<L> {
 }
 
 impl<L: Channels> FlightPart<L> {
-    /// The part as far as `medium` can emit there. In a homogeneous medium the distance skipped behind a boundary counts: where mean
-    /// free paths are as short, the light of that distance would be lost.
+    /// The part in which `medium` can emit. In a homogeneous medium it includes the distance skipped behind a boundary:
+    /// where mean free paths are as short, its light would be lost.
     pub(crate) fn emitting(&self, medium: &Medium) -> RaySegment {
         let MediumInterval { segment, skipped } = self.interval;
         match medium.heterogeneous() {
@@ -127,11 +127,11 @@ impl<L: Channels> FlightPart<L> {
     }
 }
 
-/// Samples where `segment` ends: at an exponential optical depth by the `hero` channel, or before, on a surface. Only
-/// profiles with nulls can pass boundaries. `along` is shown what it passes.
+/// Samples where `segment` ends: at an exponential optical depth of the `hero` channel, or before that on a surface.
+/// Only profiles with nulls can pass boundaries. `along` sees what the flight passes.
 ///
-/// LW96 eq. 4: the distance is that of a free flight; its density is eq. 6 in a medium, and that it reaches a surface
-/// has the probability of eq. 7.
+/// LW96 eq. 4: the distance of a free flight. Its density in a medium is eq. 6; its probability to reach a surface is
+/// eq. 7.
 #[inline(always)]
 pub(crate) fn sample_free_flight<P: Profile>(
     mut segment: Segment<'_>,
@@ -151,7 +151,7 @@ pub(crate) fn sample_free_flight<P: Profile>(
 struct Leg<L> {
     interaction: Option<Interaction>,
     state: FlightState<L>,
-    /// What it used up of the optical depth to go.
+    /// Optical depth used up.
     spent: f32,
     /// The part of the medium that it crossed.
     interval: MediumInterval,
@@ -206,8 +206,7 @@ fn collide<P: Profile>(
     Interaction::Medium(position, properties)
 }
 
-/// A flight that may pass surfaces: each crossing switches the medium, and takes its share where the surface
-/// lets only a part through.
+/// A flight that may pass surfaces. Each crossing switches the medium and applies the surface's transmission.
 fn fly_across_boundaries<P: Profile>(
     mut segment: Segment<'_>,
     hero: usize,

@@ -1,4 +1,4 @@
-//! What remains along a segment whose ends are given.
+//! Transmittance of a segment with given ends.
 
 use super::Segment;
 use crate::{
@@ -22,9 +22,9 @@ pub(crate) struct SegmentTransmittance<L> {
     pub medium: MediumIndex,
 }
 
-/// What remains of radiance along `ray` (its `t_max` is the segment's length, infinite for an emitter at
-/// infinity), starting in `medium`; none where a surface blocks it or an estimate is 0. The ray stops `cut` short of the segment's
-/// end to be clear of the surface there: the medium reaches on to the end. Emitters that are `hidden` do not block.
+/// Transmittance along `ray` (its `t_max` is the segment's length, infinite for an emitter at infinity), starting in
+/// `medium`; none where a surface blocks it or an estimate is 0. The ray stops `cut` short of the segment's end, to be
+/// clear of the surface there, but the medium reaches to the end. Emitters do not block if `hidden`.
 ///
 /// LW96 eq. 10: T and the visibility in g(x, y).
 #[inline]
@@ -79,14 +79,14 @@ fn across_boundaries<P: Profile>(
     }
 }
 
-/// What lies behind while a segment is followed.
+/// What the segment has crossed so far.
 struct Product<P: Profile> {
     depth: P::Channels,
     /// Product of the transmittances of all intervals, some of them estimates; where nothing varies, left at 1.
     estimate: P::Channels,
     /// Product of the probabilities of passing half-transparent surfaces.
     passing: f32,
-    /// Product of what they let through.
+    /// Product of the fractions that they let through.
     tint: Spectrum,
 }
 

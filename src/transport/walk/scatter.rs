@@ -64,7 +64,8 @@ pub(super) fn unguided<P: Profile>(
     }
 }
 
-/// By them or by the guide: what a Dirac lobe reflects is as likely as the guide leaves it, all else as the mixture has it.
+/// By the BSDF, the phase function or the guide. The guide scales the probability of a Dirac lobe by the part that it
+/// leaves unguided; other directions have the density of the mixture.
 pub(super) fn guided<P: Profile>(
     scene: &Scene,
     guide: &Guide,
