@@ -319,8 +319,8 @@ impl Locator<'_> {
         None
     }
 
-    /// A ray from `origin`. Half of them go in a random direction, or `leaving`. Half are aimed at a boundary, or end
-    /// at a point of known medium.
+    /// A ray from `origin`. Half of these rays go in a random direction, or `leaving`. Half are aimed at a boundary,
+    /// or at a point of known medium, where they end.
     fn aim(&self, origin: Vec3, leaving: Option<Vec3>, stream: &mut Stream) -> (Ray, Option<MediumIndex>) {
         let Known { boundaries, points, .. } = self.known;
         if stream.uniform() < 0.5 {
