@@ -7,7 +7,7 @@ from tyndall.display import SIGNATURE, chunk
 
 
 def animation(frames: Sequence[bytes], fps: float) -> bytes:
-    """An animated PNG of PNG files of one size, which repeats for ever; what they say of themselves is left out."""
+    """An endless animated PNG from PNG files of one size, without their metadata."""
     header = next(data for kind, data in chunks(frames[0]) if kind == b"IHDR")
     parts = [SIGNATURE, chunk(b"IHDR", header), chunk(b"acTL", struct.pack(">II", len(frames), 0))]
     for number, frame in enumerate(frames):
@@ -16,7 +16,7 @@ def animation(frames: Sequence[bytes], fps: float) -> bytes:
 
 
 def still(frame: bytes) -> bytes:
-    """A PNG file without what it says of itself: where it was made is nobody's business."""
+    """A PNG file without its metadata: where it was made is nobody's business."""
     kept = [chunk(kind, data) for kind, data in chunks(frame) if kind not in (b"tEXt", b"zTXt", b"iTXt")]
     return b"".join([SIGNATURE, *kept])
 

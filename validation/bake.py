@@ -1,6 +1,6 @@
-"""What Mitsuba gets in place of what it has not: density functions as grids, OpenVDB's grids as its own files, phase functions as
-tables. The grid of a function covers the box of the shape that holds the medium, fine enough that what it smooths away is far
-below what a comparison resolves."""
+"""Substitutes for what Mitsuba lacks: density functions as grids, OpenVDB's grids as its own files, phase functions as tables. The
+grid of a function covers the box of the shape that holds the medium. It is so fine that what it smooths away is far below what a
+comparison resolves."""
 
 import hashlib
 import json
@@ -141,7 +141,7 @@ def voxels(function: dict, box: np.ndarray, time: float) -> list[int]:
 
 
 def smoothed(function: dict, box: np.ndarray, time: float, axis: int, count: int) -> float:
-    """What lines between so many voxels along an axis are off, over the mean of the function: both at random places."""
+    """The error of linear interpolation between so many voxels along an axis, over the mean of the function: both at random places."""
     half = np.eye(3)[axis] * (box[1] - box[0]) / (2 * count)
     at = np.random.default_rng(0).uniform(box[0] + half, box[1] - half, (PLACES, 3))
     below, here, above = (densities.value(function, at + step, time) for step in (-half, 0, half))

@@ -233,8 +233,8 @@ def cells() -> tuple[Cell, ...]:
 
 
 def sample(count: int = SAMPLE, seed: int = SEED) -> list[Cell]:
-    """Some cells, always the same for a seed: each next one is that, of a shuffled list, which brings the most pairs
-    of values not seen before."""
+    """Some cells, always the same for a seed. Each next one is the cell of a shuffled list that adds the most pairs of
+    values not seen before."""
     left, seen, chosen = list(cells()), set[Any](), list[Cell]()
     Random(seed).shuffle(left)
     while left and len(chosen) < count:

@@ -63,16 +63,16 @@ def mitsuba_renderer(scene: Scene, variant: str = "scalar_rgb", size: Size = Non
 
 def tyndall_renderer(scene: Scene, method: str, size: Size = None, threads: int | None = None) -> Renderer:
     """Tyndall on this scene."""
-    # Samples that are spread evenly leave so little noise that the test would be one of Mitsuba's own approximations,
-    # such as filters in tables, and of how independent the batches of its even samplers are.
+    # Evenly spread samples leave so little noise that the test would measure Mitsuba's own approximations, such as
+    # filters in tables, and how independent the batches of its even samplers are.
     options = {**options_of(method), "size": size, "sampler": "independent", "threads": threads}
     render = lambda effort: tyndall.render_batches(scene, effort.batches, spp=effort.spp, seed=effort.seed, **options)
     return lambda effort: Measured.of(render(effort))
 
 
 def options_of(method: str) -> dict[str, Any]:
-    """A method's options: it is an integrator, with strategies after a slash, any of `CHOICES` after a plus each, and, after a
-    colon, a tracker that all media shall use. `bdpt` takes all strategies, whether or not a pilot finds them worth their time."""
+    """A method's options. It is an integrator, then strategies after a slash, any of `CHOICES` after a plus each, and a tracker
+    for all media after a colon. `bdpt` takes all strategies, whether or not a pilot finds them worth their time."""
     walks, _, tracker = method.partition(":")
     walks, *choices = walks.split("+")
     integrator, _, strategies = walks.partition("/")

@@ -4,8 +4,8 @@
         --integrator volpath --variant llvm_ad_rgb --seed {seed} --spp {budgets} --folder {folder} --size {size} --threads {threads}"
 
 Writes an image for each number of samples, each going on from the one before, and reports on a line for each the seconds of
-rendering, their processor time, and the seconds of starting, loading and compiling. With `--tyndall OPTIONS` it is `tyndall render` by these, a process for
-each image: what that learns, and its pilot, are among the seconds."""
+rendering, their processor time, and the seconds of starting, loading and compiling. With `--tyndall OPTIONS` it
+runs `tyndall render` by these, a process for each image: its pilot and learning are among the seconds."""
 
 import argparse
 import json

@@ -39,8 +39,8 @@ def shared() -> set[str]:
 
 
 def known(name: str, place: Callable[[dict[str, Any]], dict[str, Any]]) -> bool:
-    """True unless Tyndall complains to have found this very name, or that plugin out of place: whatever else it says of
-    so poor a scene, it knows the plugin."""
+    """True unless Tyndall complains of this very name, or of the plugin out of place. Whatever else it says of so poor a
+    scene, it knows the plugin."""
     with tempfile.TemporaryDirectory(prefix="tyndall-") as folder:
         path = Path(folder, "question.json")
         path.write_text(json.dumps({"type": "scene", **place({"type": name})}))

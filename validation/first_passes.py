@@ -1,5 +1,5 @@
-"""First passes (P03T ch. 4) and what is made of them: the coarse solution itself, paths that end in it, and path tracing by densities
-over its links, beside other guides and none. relMSE after the same seconds, those of the first pass among them."""
+"""First passes (P03T ch. 4) and their uses: the coarse solution itself, paths that end in it, and path tracing by densities over its
+links, beside other guides and none. relMSE after the same seconds, first pass included."""
 
 import argparse
 import json

@@ -143,8 +143,8 @@ def told(found: Curve) -> Curve:
 
 
 def threads() -> Iterator[Curve]:
-    """How many times the samples of one thread a second has: more threads in a process, and as many processes of one thread each. What
-    processes lose too is the machine's: shared caches, clocks, two threads to a core."""
+    """Samples per second over those of one thread: by more threads in a process, and by as many processes of one thread each. Losses that
+    processes have too are the machine's: shared caches, clocks, two threads to a core."""
     counts = [2**i for i in range((os.cpu_count() or 1).bit_length())]
     turns = [(seconds(1), [seconds(n) for n in counts], [at_once(n) for n in counts]) for _ in range(TURNS)]
     remark = f"lampbox_up, 256 x 256; the median of {TURNS} turns, seconds by a clock"

@@ -1,6 +1,6 @@
-"""Instructions per sample, counted by valgrind: a cost that needs no clock. Of three scenes they are recorded: the counts of vertices,
-connections and rays are held by a test (src/analysis/strategies/timing.rs), instructions depend on the compiler. A table shows what
-it saves to leave out of the program what a scene does not need."""
+"""Instructions per sample, counted by valgrind: a cost that needs no clock. They are recorded for three scenes. A test holds the counts
+of vertices, connections and rays (src/analysis/strategies/timing.rs); instructions depend on the compiler. A table shows what is
+saved by leaving out of the program what a scene does not need."""
 
 import json
 import re

@@ -1,5 +1,5 @@
-"""Whether printed intervals hold the truth as often as they say, and whether printed noise is that of the image: many small
-studies of scenes whose image is known, and many renders of others, which differ by their seeds alone."""
+"""Checks that printed intervals hold the truth as often as they say, by many small studies of scenes whose image is known; and that
+printed noise is that of the image, by many renders of other scenes that differ by their seeds alone."""
 
 import argparse
 import json
@@ -244,7 +244,7 @@ def noise(path: Path, spp: int, renders: int, folder: Path, workers: ThreadPoolE
 
 
 def relative_variance(images: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """That of each pixel of images of luminance over its square and a hundredth of that of the whole, as `tyndall render` has it."""
+    """Variance of each pixel of luminance images over its square and a hundredth of that of the mean, as in `tyndall render`."""
     return images.var(axis=0, ddof=1) / (reference**2 + 0.01 * reference.mean() ** 2)
 
 

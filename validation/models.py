@@ -1,4 +1,4 @@
-"""Small scenes that have a model each. What a whole scene's efficiency averages away shows in them."""
+"""Small scenes with one model each. They show what the efficiency of a whole scene averages away."""
 
 import json
 from collections.abc import Iterator

@@ -1,6 +1,6 @@
-"""The phase functions of scenes as numpy sees them, written after their definitions, up to a factor: those that are functions
-of the angle and that Mitsuba has not. It gets them as tables of the cosine, `tabphase`, which it makes one over the sphere. Only
-of `specular_sphere` there is no table: straight on it is steeper than any line."""
+"""The phase functions of scenes in numpy, written after their definitions, up to a factor: those of the angle that Mitsuba lacks.
+Mitsuba gets them as tables of the cosine, `tabphase`, which it normalises over the sphere. Only `specular_sphere` has no table:
+straight on it is steeper than any line."""
 
 from collections.abc import Callable
 from typing import Any

@@ -1,5 +1,5 @@
-"""Time to equal error: relMSE x seconds of contenders that take turns in one `tyndall study`. Every render is a process of its own,
-so that its seconds hold all that precedes its first sample but reading and compiling: pilots, and what is learnt."""
+"""Time to equal error: relMSE x seconds of contenders that take turns in one `tyndall study`. Every render is a process of its own.
+Its seconds include all that precedes its first sample but reading and compiling: the pilot and learning."""
 
 import csv
 import hashlib

@@ -21,8 +21,8 @@ WANTED = 2.0
 
 @dataclass(frozen=True)
 class Published:
-    """What P03T reports of a test at a threshold: paths per pixel by classical and by informed path tracing, and the time that the one took
-    over that of the other, its first pass not counted (figures 5.4 to 5.8)."""
+    """P03T's results of a test at a threshold: paths per pixel by classical and by informed path tracing, and the ratio of their times,
+    first pass not counted (figures 5.4 to 5.8)."""
 
     classical: float
     informed: float

@@ -23,7 +23,7 @@ const LIGHTS: usize = 4;
 /// Surfaces that a ray passes before it gives up.
 const MOST_SURFACES: usize = 1000;
 
-/// Optical thickness that nothing to speak of gets through: exp(-50) is 2e-22.
+/// Optical thickness that practically no light passes: exp(-50) is 2e-22.
 const THICK: f32 = 50.0;
 
 /// What keeps light from a ray.
@@ -74,7 +74,7 @@ pub fn reason(pixels: &[Spectrum], setup: &Setup, options: &Options) -> Option<S
     }
 }
 
-/// Of the radiance that the power of all emitters would have, were it spread over the scene, an image has no less.
+/// An image is dark below this part of the radiance of all emitters' power, spread over the scene.
 const DARK: f64 = 1e-9;
 
 /// True if an image of this `mean` luminance is next to nothing beside what the emitters emit.

@@ -1,7 +1,7 @@
-//! Ways of sampling flights through a medium, one against the other (P03T A.2.1, `mcs3d`).
+//! Methods of free-flight sampling compared (P03T A.2.1, `mcs3d`).
 //!
-//! Photons of unit power enter a slab or a cube, of one medium or subdivided, at one point in one direction. What leaves
-//! through each face, and what is absorbed, is recorded for each way of choosing how far they fly: of so many photons, or
+//! Photons of unit power enter a slab or a cube, of one medium or subdivided, at one point in one direction. For each
+//! method, the power that leaves through each face and the power that is absorbed are recorded: of so many photons, or
 //! of as many as an error takes.
 
 pub mod cells;

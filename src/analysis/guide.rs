@@ -44,14 +44,14 @@ pub struct Report {
     pub seconds: f64,
     /// Memory that what was learnt takes (bytes).
     pub bytes: usize,
-    /// What the last guide but one, which walks followed to learn the last, left of the second moment of what they bring: the less,
-    /// the better.
+    /// The part of the second moment of walks' contributions that the last guide but one left: the less, the better.
+    /// Walks followed that one to learn the last.
     pub second_moment: f64,
     /// Of surfaces.
     pub surfaces: Cells,
     /// Of media.
     pub media: Cells,
-    /// What much of the light goes through, the most telling first.
+    /// Openings that much of the light goes through, the most telling first.
     pub portals: Vec<Portal>,
     /// Emitters at which most light subpaths start, once that is learnt, the first of them first.
     pub starts: Vec<Start>,
@@ -73,7 +73,7 @@ pub struct Cells {
 pub struct Portal {
     /// In the scene's coordinates.
     pub centre: [f64; 3],
-    /// Of the smallest of the spheres around it that walks aim at; that of the widest is 2.8 times as large. Above 0 (m).
+    /// Radius of the smallest sphere around it that walks aim at; the widest is 2.8 times as large. Above 0 (m).
     pub radius: f32,
 }
 

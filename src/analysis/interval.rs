@@ -1,8 +1,8 @@
 //! Means over independent seeds and how far they may be off.
 //!
-//! Few seeds, often with heavy tails: what can be negative gets Student's t; what is positive gets it for the logarithm
-//! of its mean, so that the estimate stays the mean (which is what the expected error is) while the interval is longer
-//! upwards and never reaches zero. What is computed from several means gets the same, with an error from
+//! Seeds are few, often with heavy tails. Values of either sign get Student's t. Positive values get it for the
+//! logarithm of their mean: the estimate stays the mean (which is what the expected error is), while the interval is
+//! longer upwards and never reaches zero. Numbers computed from several means get the same, with an error from
 //! resampling the seeds (bootstrap).
 
 use crate::{

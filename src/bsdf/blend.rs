@@ -44,8 +44,8 @@ impl Blend {
         [1.0 - second, second]
     }
 
-    /// Survival of part `i`, where light crosses the surface on whichever side has more. What lets light across survives alike
-    /// on both: evaluating it twice would double the cost at every depth of blends.
+    /// Survival of part `i`; if light crosses the surface, that of the side with more. A part that lets light across
+    /// survives alike on both: evaluating it twice would double the cost at every depth of blends.
     #[inline]
     fn survival_of(&self, i: usize, uv: Uv, wi: Vec3) -> f32 {
         let here = self.parts[i].survival(uv, wi);
@@ -56,8 +56,8 @@ impl Blend {
         }
     }
 
-    /// Probabilities of going on by either part, by how much light does; 0 where none does. The part that passes straight
-    /// through each of them has been taken away before.
+    /// Probabilities of sampling either part, by the light that it scatters; 0 where none does. Light that passes
+    /// straight through is left out.
     #[inline]
     fn choices(&self, uv: Uv, wi: Vec3) -> [f32; 2] {
         let weights = self.weights(uv);
@@ -131,8 +131,8 @@ impl BsdfModel for Blend {
         })
     }
 
-    /// The mean of the parts'. Where some light passes straight through, how much of what does not is either part's depends on
-    /// the direction, and the greater counts.
+    /// The mean of both parts. Where some light passes straight through, their shares of the rest depend on the
+    /// direction, and the greater survival counts.
     #[inline]
     fn survival(&self, uv: Uv, wi: Vec3) -> f32 {
         let weights = self.weights(uv);

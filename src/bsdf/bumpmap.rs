@@ -6,8 +6,8 @@ use crate::error::{Error, Result};
 use crate::math::{Uv, Vec3, vec3};
 use crate::texture::{self, Texture};
 
-/// A surface with the normals that it had if it were raised by an image. Bumps in bumps are where Mitsuba 3.9.1, which mixes
-/// their frames, differs.
+/// A surface with the normals of one that an image displaces. Nested bump maps differ from Mitsuba 3.9.1, which mixes
+/// their frames.
 pub type BumpMap = Perturbed<Heights>;
 
 /// The image: heights (m) over the surface, of which only the changes count.

@@ -10,8 +10,7 @@ use crate::math::{Spectrum, Uv, Vec3};
 use crate::sampling::Stream;
 use crate::texture::{self, Texture};
 
-/// Where the index varies, the mean may say nothing about a place: a walk survives there one time in ten at
-/// least.
+/// Least survival where the index varies, as the mean may say nothing about a place.
 const LEAST_SURVIVAL: f32 = 0.1;
 
 /// Reflects as Fresnel says, as a Dirac lobe; the lower side is black.
@@ -26,8 +25,8 @@ pub(super) struct Metal {
     eta: Texture,
     k: Texture,
     tint: Texture,
-    /// The reflectance averaged over the hemisphere by cosine, of the mean index where that varies: what a walk
-    /// survives with.
+    /// Cosine-weighted mean of the reflectance over the hemisphere, by which walks survive; of the mean index where
+    /// that varies.
     average: Spectrum,
 }
 

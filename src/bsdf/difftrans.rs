@@ -1,4 +1,4 @@
-//! A sheet that light comes through as from a diffuse lamp: Mitsuba 0.6's `difftrans`.
+//! A diffusely transmitting sheet: Mitsuba 0.6's `difftrans`.
 
 use super::{BsdfModel, BsdfSample, BsdfValue, Transport, reflectance};
 use crate::description::{Params, Table, table};

@@ -143,12 +143,11 @@ pub trait BsdfModel {
     /// Samples `wo`; none where nothing scatters (`wi` on a dark side, grazing, total loss).
     fn sample(&self, uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample>;
 
-    /// Probability in [0, 1] with which a walk goes on from here (LW96 eq. 9: a walk ends by absorption):
-    /// the largest channel of the albedo. It must be the same for both directions of any scattering pair, as
-    /// it enters forward and backward densities alike, so it may depend on `uv` and, for models that do not
-    /// scatter across, on the side of `wi`, on nothing else. Where the albedo varies more with the direction,
-    /// this is some mean of it. Walks end by it and not in `sample`: how albedos become survivals is a choice, see
-    /// [`crate::settings::options::Survival`].
+    /// Probability in [0, 1] with which a walk goes on from here (LW96 eq. 9: a walk ends by absorption): the largest
+    /// channel of the albedo. It enters forward and backward densities alike, so it must be the same for both
+    /// directions of any scattering pair. It may depend only on `uv` and, for models that do not scatter across, on the
+    /// side of `wi`. Where the albedo varies more with the direction, this is some mean of it. Walks end by it and not
+    /// in `sample`: how albedos become survivals is a choice, see [`crate::settings::options::Survival`].
     fn survival(&self, uv: Uv, wi: Vec3) -> f32;
 
     /// The part of light that passes straight through as if nothing were there (`null`: 1; `thindielectric`:

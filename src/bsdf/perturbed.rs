@@ -15,9 +15,10 @@ pub trait Normals {
 
 /// The nested model, seen in a frame around another normal.
 ///
-/// As in Mitsuba, that frame depends on where the eye is and the shadowing on where the light comes from. The model is thus one
-/// function of both, whichever way a path is walked; it is not reciprocal. Of eye and light each must be on the same side of
-/// the surface in both frames; Mitsuba demands it of the light alone, which makes a difference without `flip_invalid_normals`.
+/// As in Mitsuba, that frame depends on the direction of the eye, and the shadowing on that of the light. The model is
+/// thus one function of both, whichever way a path is walked; it is not reciprocal. Eye and light must each be on the
+/// same side of the surface in both frames. Mitsuba demands this of the light alone, which differs without
+/// `flip_invalid_normals`.
 #[derive(Clone, Debug)]
 pub struct Perturbed<N> {
     normals: N,
@@ -58,8 +59,8 @@ impl Here {
         Frame { tangent, bitangent: normal.cross(tangent), normal }
     }
 
-    /// Probability with which a walk from a light takes the frame that eyes see where it is tilted the other way, or does not: about
-    /// as much as there are such eyes.
+    /// Probability that a walk from a light takes the frame `flipped` for the eye, or the other: about the share of
+    /// such eyes.
     #[inline]
     fn chance(&self, flipped: bool) -> f32 {
         let Vec3 { x, y, z } = self.normal;
@@ -109,7 +110,8 @@ impl<N: Normals> Perturbed<N> {
         Here { normal, flips: self.flips }
     }
 
-    /// What of the nested value counts of `light`, which is `local` in the perturbed frame: the ratio of its cosines, shadowed.
+    /// The factor on the nested value for `light`, which is `local` in the perturbed frame: the ratio of its cosines,
+    /// shadowed.
     #[inline]
     fn factor(&self, here: &Here, light: Vec3, local: Vec3) -> f32 {
         let (cosine, Vec3 { x, y, z }) = (light.z.abs(), here.normal);
@@ -143,8 +145,8 @@ impl<N: Normals> BsdfModel for Perturbed<N> {
         BsdfValue { value: value * factor, pdf_fwd: pdf_fwd * fwd, pdf_rev: pdf_rev * rev }
     }
 
-    /// A walk from a light does not know yet where the eye will be: it takes one of both frames, and ends where that is not the
-    /// one that the eye sees.
+    /// A walk from a light does not know yet where the eye will be. It takes one of both frames, and ends if the eye
+    /// does not see that one.
     #[inline(never)]
     fn sample(&self, uv: Uv, wi: Vec3, transport: Transport, stream: &mut Stream) -> Option<BsdfSample> {
         let here = self.at(uv);

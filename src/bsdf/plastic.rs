@@ -32,8 +32,8 @@ pub(super) struct Base {
     compression: f32,
 }
 
-/// How much rather than the base, by the light of either, the coat is chosen: to the base emitters are connected, what the coat
-/// mirrors is found this way alone.
+/// The coat counts this many times its light when it is chosen against the base. The base can be connected to emitters;
+/// the coat's reflection is found by sampling alone.
 const FAVOURED: f32 = 4.0;
 
 /// Beyond, next to nothing gets out of the coat again, and f32 does not know how much.
@@ -52,8 +52,8 @@ pub(super) struct Shares {
 }
 
 impl Shares {
-    /// Probabilities of the coat, `favoured` so many times, and of the base, of light of which the coat lets the part `into`
-    /// in; none where neither reflects any.
+    /// Probabilities of the coat, `favoured` so many times, and of the base, if the coat lets the part `into` of the
+    /// light in; 0 where neither reflects any.
     #[inline]
     pub(super) fn choose(&self, into: f32, favoured: f32) -> (f32, f32) {
         let (coat, base) = (favoured * (1.0 - into) * self.of_coat, into * self.of_base);

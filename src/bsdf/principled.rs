@@ -55,8 +55,8 @@ struct Choices {
     enters: f32,
 }
 
-/// How much rather than the diffuse lobe, by the light of either, a dielectric's reflection is chosen: of narrow lobes connections
-/// find little.
+/// A dielectric's reflection counts this many times its light when lobes are chosen: connections find little of narrow
+/// lobes.
 const FAVOURED: f32 = 4.0;
 
 /// Indices closer to 1 than this would bend light by less than a narrow lobe is wide.

@@ -34,7 +34,7 @@ pub(super) struct Facet {
 pub(super) struct Meeting {
     /// The part that they reflect; the rest they refract.
     pub fresnel: f32,
-    /// f (1/sr), where they did with all light what leads from one direction to the other.
+    /// f (1/sr) if all light took the way that connects the directions.
     pub value: f32,
     /// Density of `wo` given `wi` (1/sr) under the same condition, of visible normals.
     pub pdf_fwd: f32,

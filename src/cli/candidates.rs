@@ -1,4 +1,4 @@
-//! What a pilot foretells of all that it may choose: for `info --pilot`.
+//! What a pilot predicts for its candidates: for `info --pilot`.
 
 use super::{plan, provenance};
 use crate::learning::pilot::{Foretold, LEARNT, Report, WORTHWHILE};

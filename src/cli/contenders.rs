@@ -1,4 +1,4 @@
-//! Contenders of a study out of words: whatever says how `tyndall render` makes paths can be one, and can be an axis.
+//! Contenders of a study from words. Options that say how `tyndall render` makes paths can be one, and can be an axis.
 
 use super::{depth::MaxDepth, estimator::Estimator, study::Study};
 use crate::{
@@ -151,9 +151,9 @@ fn product(axes: &[Axis]) -> Vec<Contender> {
     all.into_iter().map(|(name, words)| Contender { name, how: How::Options(words) }).collect()
 }
 
-/// Who may make a reference, best first, each with every bound on the depth of paths that one of `contenders` has, with flights
-/// that are sampled without bias, and with the light that they all speak of. Light tracing is not among them: what it rarely
-/// finds makes a bad truth.
+/// Renderers that may make a reference, best first: with every bound on the depth of paths that one of `contenders`
+/// has, with unbiased flights, and with the light that they all agree on. Light tracing is not among them: what it
+/// rarely finds makes a bad reference.
 pub(super) fn referees(contenders: &[Contender]) -> Result<Vec<How>> {
     let mut requested = Vec::new();
     for Contender { name, how } in contenders {
@@ -184,7 +184,7 @@ pub(super) fn referees(contenders: &[Contender]) -> Result<Vec<How>> {
     Ok(referees)
 }
 
-/// Words for what decides about the light of the image, besides its depth, where all of `requested` want the same; else the
+/// Options that decide which light the image has, besides its depth, if all of `requested` want the same; else the
 /// scene decides.
 fn same_light(requested: &[Estimator]) -> String {
     let words = |estimator: &Estimator| {

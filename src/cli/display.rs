@@ -1,4 +1,4 @@
-//! The options --exposure and --view: how the PNG shows an image, of which nothing is in the image itself.
+//! The options --exposure and --view: how the PNG shows an image. Neither changes the image itself.
 
 use super::parsers::one_of;
 use crate::{

@@ -161,8 +161,8 @@ pub(super) fn without_window(made: &Value) -> Value {
     made
 }
 
-/// `settings` without what decides about noise alone: what a pilot chose, and whether walks follow a guide. Samples that were
-/// made otherwise are of the same image. `validation/cluster/tiles.py` has the same list.
+/// `settings` without those that affect noise alone: the pilot's choice, and whether walks follow a guide. Samples that
+/// differ in these are of the same image. `validation/cluster/tiles.py` has the same list.
 fn of_image(settings: &Value) -> Value {
     let mut settings = settings.clone();
     for chosen in ["chosen_by_pilot", "guide", "basis", "learnt_starts", "sky"] {

@@ -1,4 +1,4 @@
-//! Values that change in time (BMA02 sec. 5): what they are at a few times, and how those between follow.
+//! Values that change in time (BMA02 sec. 5): keys at a few times, and the interpolation between them.
 
 mod matrices;
 
@@ -9,7 +9,7 @@ use super::{
 use crate::error::{Error, Result};
 use matrices::Parts;
 
-/// A value at several times. Before the first and after the last of them, theirs hold.
+/// A value at several times; constant before the first and after the last of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keyframes {
     interpolation: Interpolation,
@@ -25,14 +25,14 @@ pub struct Key {
     pub value: Property,
 }
 
-/// How numbers between two keys follow from them.
+/// How numbers are interpolated between two keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interpolation {
     /// On a straight line.
     #[default]
     Linear,
-    /// With a slope that changes without jumps, and never beyond the two keys: what holds still or turns, eases in and
-    /// out (Fritsch and Butland, "A Method for Constructing Local Monotone Piecewise Cubic Interpolants", 1984).
+    /// With a continuous slope, and never beyond the two keys: values ease in and out where they rest or turn (Fritsch
+    /// and Butland, "A Method for Constructing Local Monotone Piecewise Cubic Interpolants", 1984).
     Smooth,
 }
 
@@ -76,7 +76,7 @@ impl Keyframes {
         &self.keys
     }
 
-    /// How those between follow.
+    /// The interpolation between keys.
     pub fn interpolation(&self) -> Interpolation {
         self.interpolation
     }
@@ -94,7 +94,7 @@ impl Keyframes {
         })
     }
 
-    /// The value whose numbers are what `of` makes of theirs.
+    /// The value with each number as `of` makes it from its curve.
     fn value(&self, of: impl Fn(&Curve) -> f64) -> Value {
         let times: Vec<f64> = self.keys.iter().map(|key| key.time).collect();
         let all: Vec<Vec<f64>> = self.keys.iter().map(|key| numbers(&key.value.value)).collect();

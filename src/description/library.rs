@@ -23,14 +23,14 @@ pub struct Library {
     pub is_strict: bool,
     /// Smooth glass and metal are as rough as this, if anything.
     pub soften: Option<f64>,
-    /// Where and when the scene is: what becomes the origin of all positions, in the file's coordinates (m), and its time (s). For
-    /// what is built from an object and its library alone.
+    /// The origin of all positions, in the file's coordinates (m), and the scene's time (s). For parts that are built
+    /// from an object and its library alone.
     pub place: Cell<(DVec3, f64)>,
     /// What other moments of the scene read.
     pub kept: Kept,
 }
 
-/// What was read for a scene that moves, by what it is: all its moments have it from here.
+/// What a moving scene has read, by key: shared by all its moments.
 #[derive(Clone, Debug, Default)]
 pub struct Kept(Arc<Mutex<HashMap<String, Arc<dyn Any + Send + Sync>>>>);
 

@@ -1,23 +1,23 @@
-//! Numbers of files that are a hair out of range, as resampling, half precision and colour spaces leave them: what they
-//! become, and what is said of it, the same for every kind of file.
+//! Numbers of files that are a hair out of range, as resampling, half precision and colour spaces leave them: how they
+//! are mended, and what the user is told, for every kind of file.
 //!
-//! Densities, colours and light are finite and at least 0; shares of light are at most 1. What is below becomes 0, what
-//! is above the most that may be becomes that, and what is infinite the greatest finite number of the file. Where that
-//! would make something else of the file, it is refused: where a number is NaN, or where more than one in a hundred of
-//! the numbers that are not 0 would change by more than a fifth of the greatest. The rings of a cubic interpolation stay
-//! below that, a velocity that is taken for a density does not.
+//! Densities, colours and light are finite and at least 0; shares of light are at most 1. Numbers below become 0,
+//! numbers above the limit become the limit, and infinite ones the greatest finite number of the file. A file is
+//! refused where that would change its meaning: where a number is NaN, or where more than one in a hundred of its
+//! non-zero numbers would change by more than a fifth of the greatest. The rings of a cubic interpolation stay below
+//! that; a velocity taken for a density does not.
 
 use super::Library;
 use crate::error::{Error, Result};
 use std::path::Path;
 
-/// So many of the numbers that are not 0 may change grossly.
+/// The share of non-zero numbers that may change grossly.
 const SHARE: f64 = 0.01;
 
-/// A change is gross above so much of the greatest finite number, whatever its sign.
+/// A change is gross above this part of the greatest finite number, whatever its sign.
 const GROSS: f32 = 0.2;
 
-/// A number may be so much above the most that may be, relative to that: it is taken for rounding.
+/// Relative excess over the limit that is taken for rounding.
 const ROUNDING: f32 = 1e-6;
 
 /// A number of a file.
@@ -48,7 +48,7 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Of all that `numbers` shows its argument, which may be from 0 to `most`.
+    /// Of all that `numbers` shows its argument; 0 to `most` is valid.
     pub fn of(numbers: impl Fn(&mut dyn FnMut(Number)), most: f32) -> Self {
         let mut survey = Self { most, counted: 0, wrong: 0, greatest: [0.0; 2], worst: None };
         numbers(&mut |number| survey.add(number));
@@ -99,7 +99,7 @@ impl Survey {
         Mend { most: self.most, greatest: self.greatest[0].min(self.most) }
     }
 
-    /// True if so much would change that the numbers must mean something else.
+    /// True if mending would change the meaning of the numbers.
     fn is_else(&self, numbers: impl Fn(&mut dyn FnMut(Number))) -> bool {
         let (mend, gross, mut count) = (self.mend(), GROSS * self.greatest[1], 0);
         let is_gross = |value: f32| value.is_infinite() || (mend.of(value) - value).abs() > gross;
@@ -144,7 +144,7 @@ pub struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// What becomes of `numbers`, which may be from 0 to `most`; none where all of them are. The user is told once.
+    /// How to mend `numbers`, valid from 0 to `most`; none if all of them are. The user is told once.
     pub fn mend(
         &self,
         numbers: impl Fn(&mut dyn FnMut(Number)) + Copy,

@@ -167,7 +167,7 @@ impl<'a> Params<'a> {
         }
     }
 
-    /// What one of the few words of its row means, in capitals or not.
+    /// The meaning of the given word of its row, in capitals or not.
     pub fn choice<T: Copy>(&self, name: &'static str, meanings: &[(&str, T)]) -> Result<T> {
         let (row, words) =
             self.row(name, |kind| if let Kind::Choice(words) = kind { Some(*words) } else { None })?;

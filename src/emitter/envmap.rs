@@ -19,10 +19,10 @@ use std::{
 /// Mitsuba, columns are pixels side by side, rows are interpolated from pole to pole: the first and the last
 /// row are the poles.
 ///
-/// Directions are chosen by cells, the squares between four neighbouring pixels, in proportion to their mean
-/// luminance times their solid angle, and within each by luminance too, which is bilinear in azimuth and cosine there: the
-/// poles are no special places. Next-event estimation counts each pixel less by half the mean luminance: directions that surfaces
-/// and media choose find the rest well enough.
+/// Directions are sampled by cells, the squares between four neighbouring pixels, in proportion to mean luminance times
+/// solid angle. Within a cell they follow the luminance, which is bilinear in azimuth and cosine there: the poles are
+/// no special places. Next-event estimation subtracts half the mean luminance from each pixel (MIS compensation):
+/// directions that surfaces and media sample find the rest well enough.
 #[derive(Clone, Debug)]
 pub struct EnvMap {
     map: Arc<Map>,
@@ -53,8 +53,8 @@ struct Aim {
     spared: f32,
 }
 
-/// What `mis_compensation` spares, in units of the mean luminance: by half of it both ways to choose directions follow the
-/// luminance together, if surfaces and media choose all alike, and as often as next-event estimation.
+/// What `mis_compensation` subtracts, in units of the mean luminance. With half of it, both ways to sample directions
+/// together follow the luminance, if surfaces and media sample uniformly and as often as next-event estimation.
 const SPARED: f32 = 0.5;
 
 /// The least part of its luminance that a pixel keeps: some strategies have no other way to reach it.

@@ -301,8 +301,8 @@ impl Emitter {
         matches!(self.kind, Kind::Infinite(_))
     }
 
-    /// True if its light leaves a disk in parallel, that around the scene if it is at infinity: where on the disk is
-    /// measured per area, and there is no 1/d^2.
+    /// True if its light leaves a disk in parallel; at infinity, the disk around the scene. Starts have a density per
+    /// area of the disk, and there is no 1/d^2.
     pub fn is_parallel(&self) -> bool {
         matches!(self.kind, Kind::Infinite(_) | Kind::Beam(_))
     }
@@ -318,8 +318,8 @@ impl Emitter {
         }
     }
 
-    /// True if next-event estimation can find it: it is not of points that emit in a single direction each, unless it
-    /// knows which of them sends light where.
+    /// True if next-event estimation can find it. It cannot where each point emits in a single direction, unless it
+    /// knows which point sends light where.
     #[inline]
     pub fn is_connectible(&self) -> bool {
         !matches!(&self.kind, Kind::Surface(e) if e.is_dirac())

@@ -1,8 +1,8 @@
-//! Sums of the passes over an image: its mean, and how far the mean may be off. They are the same to the last bit in whatever
+//! Sums of the passes over an image: its mean and the error of the mean. They are the same to the last bit in whatever
 //! order, and from whatever parts, passes are added.
 //!
-//! How far the mean may be off is what its halves say, the passes of even and those of odd number: these are independent of
-//! each other whatever the sampler, while passes of one half may be spread evenly together.
+//! The error follows from two halves, the passes of even and of odd number. The halves are independent whatever the
+//! sampler, while passes of one half may be spread evenly together.
 
 use super::noise::Noise;
 use crate::math::{
@@ -21,7 +21,7 @@ const CHUNK: usize = 4096;
 /// Adds up passes; each pass is one estimate of the whole image.
 #[derive(Clone, Debug)]
 pub struct Accumulator {
-    /// Sums of R, G, B, and of luminance: of the passes of even number less those of the others.
+    /// Sums of R, G, B; and the luminance of even passes less that of odd ones.
     pixels: Vec<ExactSums<4>>,
     /// Sums of products of two channels, R R, R G, R B, G G, G B, B B; empty where not needed.
     products: Vec<ExactSums<6>>,
@@ -38,7 +38,7 @@ impl Accumulator {
         Self { pixels: sums, products: Vec::new(), image: pixels, passes: [0; 2] }
     }
 
-    /// The same for passes that are of so many `planes`, one behind the other: the image and layers of it.
+    /// The same for passes of several `planes`, one behind the other: the image and its layers.
     pub fn with_planes(mut self, planes: usize) -> Self {
         self.pixels.resize(self.image * planes, ExactSums::default());
         self
@@ -84,7 +84,7 @@ impl Accumulator {
         self.mean_of(0)
     }
 
-    /// That of a plane.
+    /// The mean of a plane.
     pub fn mean_of(&self, plane: usize) -> Vec<Spectrum> {
         let scale = 1.0 / self.passes().max(1) as f64;
         let of_pixel = |sums: &ExactSums<4>| {
@@ -118,8 +118,8 @@ impl Accumulator {
         self.pixels.iter().flat_map(ExactSums::parts).chain(self.products.iter().flat_map(ExactSums::parts))
     }
 
-    /// `passes` of even and of odd number over `planes` of so many `pixels`, from what [`Accumulator::sums`] gave; none if
-    /// that is not as many.
+    /// From what [`Accumulator::sums`] gave for `passes` of even and of odd number over `planes` of `pixels` each; none
+    /// if the number of sums does not fit.
     pub fn from_sums(pixels: usize, planes: usize, passes: [u64; 2], sums: &[Parts]) -> Option<Self> {
         let image = pixels;
         let (own, products) = sums.split_at_checked(pixels.checked_mul(planes)?.checked_mul(4)?)?;
@@ -154,8 +154,8 @@ impl Accumulator {
         self.image == 0
     }
 
-    /// Estimated relative error of the mean of an image `width` pixels across, whose pixels see this much of emitters; none
-    /// before each half has a pass, and light was found.
+    /// Estimated relative error of the mean of an image `width` pixels across, whose pixels see this much of emitters;
+    /// none before each half has a pass and some light is found.
     pub fn noise(&self, width: usize, seen: &dyn Fn(usize) -> f64) -> Option<Noise> {
         let [even, odd] = self.passes.map(|passes| passes as f64);
         if even == 0.0 || odd == 0.0 {

@@ -1,8 +1,8 @@
-//! Reconstruction filters. Camera subpaths are distributed by the filter, so every sample counts fully for one
-//! pixel; what light subpaths contribute is spread over the pixels that the filter reaches.
+//! Reconstruction filters. Camera subpaths use filter importance sampling, so every sample counts fully for one pixel.
+//! Light subpaths are splatted onto all pixels that the filter reaches.
 //!
-//! Where a filter has negative lobes, camera subpaths are distributed by its magnitude and carry its sign, times
-//! what the lobes cancel: the integral of |f| over that of f.
+//! Where a filter has negative lobes, camera subpaths are distributed by its magnitude. They carry its sign, times the
+//! integral of |f| over that of f.
 
 use super::lobes::{self, Lobes};
 use crate::{

@@ -83,18 +83,18 @@ impl Quantity {
     }
 }
 
-/// The components that P03 eq. 17 splits radiance into, by what happens in media between the lens and the first vertex
-/// of the path from there. Boundaries at which nothing but the medium changes are no vertices. Scattered light is split
-/// further, by how many vertices of the whole path are in media; surfaces may be among the others.
+/// The components of radiance in P03 eq. 17, by what happens in media between the lens and the first vertex of the path
+/// from there. Boundaries where only the medium changes are no vertices. Scattered light is split further, by the
+/// number of vertices in media on the whole path; others may be on surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Component {
     /// L_un: that vertex is on a surface, or it is an emitter other than a medium.
     Unscattered,
     /// L_e: it is where a medium emits.
     Emitted,
-    /// Of L_sc, where it is a collision in a medium: there is no other one.
+    /// Part of L_sc: that vertex is a collision in a medium, and the only one.
     Single,
-    /// Of L_sc: there are more.
+    /// Part of L_sc: there are more.
     Multiple,
 }
 
@@ -102,8 +102,8 @@ impl Component {
     /// Every component.
     pub const ALL: [Self; 4] = [Self::Unscattered, Self::Emitted, Self::Single, Self::Multiple];
 
-    /// That of a path with more than one segment, whose first vertex from the lens is in a medium or not, and which
-    /// collides so many times in all.
+    /// The component of a path of several segments, by whether its first vertex from the lens is in a medium, and by
+    /// its number of `collisions`.
     #[inline]
     pub fn of(is_first_in_medium: bool, collisions: u32) -> Self {
         match (is_first_in_medium, collisions) {
@@ -113,7 +113,7 @@ impl Component {
         }
     }
 
-    /// That of a path of one segment, from an emitter that is a medium or not.
+    /// The component of a path of one segment, by whether its emitter is a medium.
     #[inline]
     pub fn of_emitter(is_medium: bool) -> Self {
         if is_medium { Self::Emitted } else { Self::Unscattered }

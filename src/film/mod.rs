@@ -90,8 +90,8 @@ impl Film {
         Self { width, height, window, filter, border, format, across, down }
     }
 
-    /// The part of it of `size` pixels from `corner` on, both within it. What its pixels are to show is what they show in
-    /// the whole: filters are cut off where those of the whole are.
+    /// The part of `size` pixels from `corner` on, both within it. Its pixels show what they show in the whole: filters
+    /// are cut off only where those of the whole are.
     pub fn part(&self, corner: [u32; 2], size: [u32; 2]) -> Self {
         let border = [0, 1].map(|axis| {
             let [before, after] = self.border[axis];

@@ -1,11 +1,12 @@
-//! How far an image may be off, as two halves of its samples show that are independent of each other.
+//! The error of an image, estimated from two independent halves of its samples.
 //!
-//! The error is that of relMSE, whose denominators are squares of the true image. A pixel's own mean is a bad stand-in for
-//! it where few samples carry much light: the sample that makes the variance makes the mean too, and the quotient of the two
-//! is at most 1, however far such samples are above what is around them. Hence a pixel's mean counts only as far as the
-//! means of its neighbours differ by more than their noise (Lee 1980); else theirs does. The mean of the neighbours counts in
-//! the same way against what is around them, and so on to the whole image: where nine pixels of ten have found no light yet,
-//! eight neighbours say nothing. A small lamp in view is no such sample, which only a look there can tell: pixels that carry
+//! The error is that of relMSE, whose denominators are squares of the true image. A pixel's own mean is a bad stand-in
+//! for the true one where few samples carry much light. The sample that makes the variance makes the mean too, and
+//! their quotient is at most 1, however far such samples are above what is around them. Hence a pixel's mean counts
+//! only as far as the means of its neighbours differ by more than their noise (Lee 1980); else their mean does. That
+//! mean counts in the same way against what is around it, and so on to the whole image: where nine pixels of ten have
+//! found no light yet, eight neighbours say nothing. A small lamp in view is no such sample, but only a look can tell:
+//! pixels that carry much of the error are looked at.
 //! much of the error are looked at.
 
 use crate::math::relative::Relative;
@@ -19,7 +20,7 @@ const TILE: usize = 3;
 pub struct Noise {
     /// The root of the mean over pixels of variance / (mean^2 + 0.01 m^2), by luminance, where m is that of the whole image.
     pub error: f64,
-    /// How many pixels carry it: as many equal ones would make it as uncertain.
+    /// Pixels that carry it: as many equal ones would make it as uncertain.
     pub carriers: f64,
 }
 
@@ -34,8 +35,8 @@ const WORTH: f64 = 1e-3;
 const BRIGHTER: f64 = 2.0;
 
 impl Noise {
-    /// That of an image `width` pixels across, from the luminance of each pixel in either half; none where no pixel has
-    /// any light yet. `seen` is the luminance of what a pixel sees of emitters, not scattered.
+    /// The noise of an image `width` pixels across, from the luminance of each pixel in either half; none where no
+    /// pixel has any light yet. `seen` is the unscattered luminance of emitters in a pixel.
     pub fn of_halves(width: usize, halves: &[(f64, f64)], seen: &dyn Fn(usize) -> f64) -> Option<Self> {
         // The halves differ by the root of twice the variance of either, their mean varies by half of it.
         let moments = |(a, b): &(f64, f64)| (0.5 * (a + b), (0.5 * (a - b)).powi(2));
@@ -60,7 +61,7 @@ impl Noise {
         Some(Self::of_sums(sum / count, squares / (count * count)))
     }
 
-    /// That of parts that are independent of each other: of the weighted sum of their squared errors.
+    /// The noise of independent parts: of the weighted sum of their squared errors.
     pub fn sum(parts: impl Iterator<Item = (f64, Self)>) -> Self {
         let term = |(weight, Self { error, carriers }): (f64, Self)| {
             let square = weight * error * error;
@@ -114,7 +115,7 @@ impl Level {
         members.filter(|member| self.cells[*member].0.is_finite()).collect()
     }
 
-    /// What each cell is taken for; those that are no numbers, for nothing.
+    /// What each cell is taken for: 0 if it is no number.
     fn taken(&self) -> Vec<Taken> {
         if self.cells.len() == 1 {
             return vec![Taken { prior: self.cells[0].0, content: 1.0 }];
@@ -138,13 +139,13 @@ impl Level {
 struct Taken {
     /// What its surroundings say.
     prior: f64,
-    /// The part of how its neighbours are spread that is no noise.
+    /// The part of its neighbours' spread that is no noise.
     content: f64,
 }
 
 impl Taken {
-    /// The members of a cell, which itself is taken for `around`. The other members stand for its own mean there: where
-    /// they differ from what is around them by noise alone, what is around is the better guess.
+    /// What the members of a cell are taken for, if the cell is taken for `around`. The mean of the others stands for
+    /// the cell's own: where they differ from their surroundings by noise alone, the surroundings are the better guess.
     fn of_cell(members: &[Moments], around: &Self) -> Vec<Self> {
         let count = members.len() as f64;
         if members.len() < 2 {
@@ -164,8 +165,8 @@ impl Taken {
     }
 }
 
-/// Mends the `terms` of pixels that are much brighter than they are `taken` for, and what they see is: of those that carry
-/// most, by what is `seen`; of others as much as of those.
+/// Corrects the `terms` of pixels that are much brighter than they are `taken` for. Those that carry most are corrected
+/// by what is `seen`, the others in the same proportion.
 fn look(terms: &mut [f64], moments: &[Moments], taken: &[f64], to: Relative, seen: &dyn Fn(usize) -> f64) {
     let total: f64 = terms.iter().sum();
     let is_odd = |pixel: &usize| moments[*pixel].0 > BRIGHTER * taken[*pixel].abs();

@@ -25,8 +25,8 @@ pub trait Sink: Write + Seek {}
 
 impl<T: Write + Seek> Sink for T {}
 
-/// Writes a file to `path` by `fill`, if it is none that is read. A reader of `path` sees the old file or the new one, never a part; a device or
-/// pipe gets all of it at once.
+/// Writes a file to `path` by `fill`, unless it is an input. A reader of `path` sees the old file or the new one, never
+/// a part; a device or pipe gets all of it at once.
 pub fn write(path: &Path, fill: impl FnOnce(&mut dyn Sink) -> io::Result<()>) -> Result<()> {
     inputs::guard(path)?;
     let target = Target::of(path)?;

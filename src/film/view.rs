@@ -1,5 +1,5 @@
-//! What a screen shows of an image: its exposure, and the view transform that brings radiance into what a screen can
-//! show. Of these nothing is in the image itself.
+//! How a screen shows an image: its exposure, and the view transform from radiance to the range of the screen. Neither
+//! is stored in the image.
 
 mod agx;
 mod exposure;

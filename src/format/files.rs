@@ -20,11 +20,11 @@ use std::{
 };
 use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
-/// What decides about a scene, apart from the user's definitions: where none of it changes, the scene does not.
+/// All that a scene depends on besides the user's definitions: if none of it changes, the scene does not.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sources {
-    /// The scene file, the files that it includes, and those there are of the ones that its plugins name (meshes, images,
-    /// grids), each once.
+    /// The scene file, the files that it includes, and those that its plugins name (meshes, images, grids) and that
+    /// exist, each once.
     pub files: Vec<PathBuf>,
     /// Spectra, which may come from files that the tree no longer names: pairs of wavelength (nm) and value.
     pub spectra: Vec<Vec<(f64, f64)>>,
@@ -47,8 +47,8 @@ pub fn file_fingerprint(path: &Path) -> Result<String> {
 }
 
 impl Sources {
-    /// Those of the scene `draft`, read from `path`. Of numbered files, the one that is shown at `time` (s), or else at the
-    /// scene's own.
+    /// The sources of the scene `draft`, read from `path`. Of numbered files, only the one shown at `time` (s), by
+    /// default the scene's own.
     pub(super) fn of(path: &Path, draft: Draft, time: Option<f64>) -> Self {
         // A volume file is what the scene around it names.
         let files = if is_volume(path) { vec![] } else { vec![path.to_owned()] };
@@ -102,7 +102,7 @@ fn spectrum(key: &Key) -> Option<Vec<(f64, f64)>> {
     if let Value::Spectrum(pairs) = &key.value.value { Some(pairs.clone()) } else { None }
 }
 
-/// The file that a property names, as plugins look for it. The names of all that do end so.
+/// The file that a property names, as plugins look for it. All such properties end so.
 fn named(property: &Property) -> Option<PathBuf> {
     match &property.value {
         Value::String(name) if property.name.ends_with("filename") => {

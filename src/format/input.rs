@@ -24,8 +24,8 @@ pub fn is_standard_input(path: &Path) -> bool {
 /// The file, when it was written, and the scene around it.
 type Kept = (PathBuf, Option<Stamp>, Arc<Portrait>);
 
-/// The scene around the volume file at `path`. It is made once, until the file is written again: that takes as long as reading
-/// it.
+/// The scene around the volume file at `path`. It is kept until the file is written again, as making it takes as long
+/// as reading the file.
 fn portrait(path: &Path) -> Result<Arc<Portrait>> {
     static KEPT: Mutex<Option<Kept>> = Mutex::new(None);
     let (mut kept, now) = (KEPT.lock().unwrap_or_else(PoisonError::into_inner), inputs::stamp(path));
@@ -44,8 +44,8 @@ pub fn told(path: &Path) -> Result<Vec<String>> {
     if is_volume(path) { Ok(portrait(path)?.told(path)) } else { Ok(vec![]) }
 }
 
-/// What the file at `path` holds, which a scene is read from: of a volume file, the scene around it, in its folder. Standard
-/// input can be read only once, so its bytes are kept.
+/// The bytes of the scene at `path`; for a volume file, the scene around it, in its folder. Standard input can be read
+/// only once, so its bytes are kept.
 pub fn bytes(path: &Path) -> Result<Vec<u8>> {
     static KEPT: OnceLock<Vec<u8>> = OnceLock::new();
     let explain = |error| Error::io(path, "read", &error);

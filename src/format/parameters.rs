@@ -40,7 +40,7 @@ fn too_long(after: &str) -> Unfit {
     }
 }
 
-/// `text` such that substitution gives `text`.
+/// `text` so escaped that substitution gives it back.
 pub(super) fn escaped(text: &str) -> String {
     text.replace('$', "\\$")
 }

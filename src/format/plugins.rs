@@ -1,5 +1,5 @@
-//! Is every plugin of a scene one, and of the kind that its tag or place says? Checked before anything is
-//! built, so that a misspelt name is reported as that, with the nearest right one.
+//! Checks that every plugin of a scene exists and is of the kind that its tag or place says. This runs before anything
+//! is built, so that a misspelt name is reported as that, with the nearest right one.
 
 use super::tags::{INSIDE, MITSUBA, derive, of_plugin, ours, whole_of};
 use crate::{
@@ -7,8 +7,8 @@ use crate::{
     error::{Error, Result},
 };
 
-/// Every plugin in `root` must be one, and of the kind that its tag says. What is known but of no use where
-/// it is, builders report.
+/// An error unless every plugin in `root` exists and is of the kind that its tag says. Builders report known plugins
+/// that are out of place.
 pub(crate) fn check(root: &Object) -> Result<()> {
     check_below(root, "scene")
 }

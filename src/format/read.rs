@@ -22,8 +22,8 @@ pub fn read(path: &Path, definitions: &[(String, String)]) -> Result<Object> {
     read_whole(path, definitions).map(|(draft, _)| draft.root)
 }
 
-/// The sources of the scene at `path`, read with the user's `definitions` as by [`read`]. Of numbered files, the one that
-/// is shown at `time` (s); where that is not given, at the scene's own.
+/// The sources of the scene at `path`, read with the user's `definitions` as by [`read`]. Of numbered files, only the
+/// one shown at `time` (s), by default the scene's own.
 pub fn sources(path: &Path, definitions: &[(String, String)], time: Option<f64>) -> Result<Sources> {
     let (draft, _) = read_whole(path, definitions)?;
     Ok(Sources::of(path, draft, time))

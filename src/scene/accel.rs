@@ -1,5 +1,4 @@
-//! All shapes as one: which primitive a ray hits first, whether anything blocks it, and what the surface is
-//! like at the hit.
+//! Ray queries over all shapes: the nearest hit, occlusion, and the surface at a hit.
 
 mod pack;
 mod traversal;
@@ -43,7 +42,7 @@ impl Geometry {
         Self { shapes, first, owner, tree }
     }
 
-    /// The shapes that it was built of.
+    /// The shapes it was built from.
     pub fn into_shapes(self) -> Vec<Shape> {
         self.shapes
     }
@@ -71,7 +70,7 @@ impl Geometry {
 
     /// All surfaces along `ray`, one after the other.
     pub fn march(&self, mut ray: Ray) -> impl Iterator<Item = SurfacePoint> {
-        // A ray cannot hit more than there are, except a sphere twice; the bound ends even a faulty loop.
+        // A ray meets each primitive once, a sphere twice. The bound ends even a faulty loop.
         const MOST_SURFACES: usize = 10_000;
         let next = move || {
             let point = self.surface(&ray, &self.closest(&ray)?);
@@ -83,7 +82,7 @@ impl Geometry {
         std::iter::from_fn(next).take(MOST_SURFACES)
     }
 
-    /// What the surface is like at `hit`, which `ray` gave.
+    /// The surface at `hit`, which `ray` found.
     #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
         let shape = self.shape_of(hit);
@@ -120,8 +119,8 @@ impl Geometry {
         SurfacePoint { shape, ..point }
     }
 
-    /// A point on `shape` for light to come from to `reference`, and its density per area (1/m^2); none where
-    /// that is useless (the point is seen edge-on).
+    /// Samples a point on `shape` to light `reference`, and its density per area (1/m^2); none where that is useless
+    /// (the point is seen edge-on).
     pub fn sample_toward(
         &self,
         shape: u32,
@@ -132,13 +131,13 @@ impl Geometry {
         (pdf > 0.0 && pdf.is_finite()).then_some((SurfacePoint { shape, ..point }, pdf))
     }
 
-    /// The density with which `sample_toward` gives `point` (1/m^2).
+    /// The density of `point` by `sample_toward` (1/m^2).
     pub fn pdf_area_toward(&self, shape: u32, reference: Vec3, point: &SurfacePoint) -> f32 {
         self.shapes[shape as usize].pdf_area_toward(reference, point)
     }
 }
 
-/// As instances of its only shape share it.
+/// A geometry of a single shape, which instances share.
 impl Shared for Geometry {
     fn closest(&self, ray: &Ray) -> Option<Hit> {
         self.tree.closest(ray)

@@ -1,5 +1,5 @@
-//! Sensors inside of something are taken out before anything is built: those of a `batch`, each with its part of the film,
-//! and those on a shape, each with a reference to it.
+//! Nested sensors move up to the scene before anything is built. Those of a `batch` each take a part of its film; those
+//! on a shape get a reference to it.
 
 use crate::{
     description::{Library, Object, Params, Property, Value, params::Child},
@@ -39,7 +39,7 @@ fn has_meter(object: &Object) -> bool {
     shape::ROWS.has(object) && children.any(|child| child.plugin == ON_SHAPE)
 }
 
-/// `shape`, which is `given` so, and then the sensors on it.
+/// `shape`, the value of `given`, without its sensors; then these sensors.
 fn taken_off(shape: &Object, given: &Property, library: &Library) -> Result<Vec<Property>> {
     let (params, _) = shape::ROWS.read(shape, library)?;
     let on = |child: &Child<'_>| child.object.plugin == ON_SHAPE;
@@ -68,7 +68,7 @@ fn named(child: &Child<'_>, sensor: Object, library: &Library) -> Object {
     Object { id, ..sensor }
 }
 
-/// The sensors of `batch`, each with the film and the sampler that are its own here.
+/// The sensors of `batch`, each with its part of the film, and the sampler of the batch.
 fn sensors(batch: &Object, library: &Library) -> Result<Vec<Property>> {
     let params = Params::new(batch, library, &BATCH_TABLE);
     let sensors = params.children("sensor", |child| sensor::ROWS.has(child.object))?;
@@ -95,7 +95,7 @@ fn sensors(batch: &Object, library: &Library) -> Result<Vec<Property>> {
     Ok(sensors.iter().map(with_film).collect())
 }
 
-/// True of a film or a sampler, which a camera in a batch has from that.
+/// True for a film or a sampler: cameras in a batch take those of the batch.
 fn is_of_batch(given: &Property, library: &Library) -> bool {
     let child = match &given.value {
         Value::Object(child) => Some(child),

@@ -78,7 +78,7 @@ pub struct Setup {
     pub(super) moving: Option<Moving>,
     /// What all of it was built from: the description at that time, without smoke.
     pub(super) root: Object,
-    /// What became of that.
+    /// What was built from `root`.
     pub(super) parts: Parts,
 }
 
@@ -92,7 +92,7 @@ pub(super) struct Moving {
 }
 
 impl Moving {
-    /// Builds the scene as it is so many seconds `after` its time, which errors tell where keyframes make numbers of their own.
+    /// Builds the scene as it is `after` seconds past its time. In scenes with keyframes, errors state `after`.
     fn assemble(&self, overrides: Overrides, before: Option<&Before<'_>>, after: f64) -> Result<Setup> {
         let is_told = after != 0.0 && keyframes::has_any(&self.root);
         assemble(self, overrides, before, after).map_err(|error| match is_told {
@@ -103,18 +103,18 @@ impl Moving {
 }
 
 impl Setup {
-    /// From when to when, after the scene's time, the shutter is open (s); none if nothing moves meanwhile.
+    /// When the shutter opens and closes, relative to the scene's time (s); none if nothing moves meanwhile.
     pub fn exposure(&self) -> Option<[f64; 2]> {
         self.moving.as_ref().map(|Moving { shutter, .. }| [shutter.opens, shutter.closes])
     }
 
-    /// The scene as `pass` of renders with `seed` sees it; none if it stands still. The origin stays where it is: what stands still
-    /// need not be built again, and what was learnt lies where it did.
+    /// The scene in `pass` of renders with `seed`; none if it stands still. The origin of coordinates stays, so static
+    /// objects are not rebuilt, and what was learnt stays in place.
     pub fn moment(&self, seed: u64, pass: u64) -> Option<Result<Self>> {
         self.after(self.moving.as_ref()?.shutter.moment(seed, pass)).transpose()
     }
 
-    /// The same at so many seconds `after` the scene's time.
+    /// The scene `after` seconds past its time; none if it stands still.
     fn after(&self, after: f64) -> Result<Option<Self>> {
         let Some(moving) = &self.moving else { return Ok(None) };
         moving.assemble(self.overrides, Some(&Before::new(self)?.in_place()), after).map(Some)
@@ -125,7 +125,7 @@ impl Setup {
         self.names(self.scene.components(&medium))
     }
 
-    /// The same of several.
+    /// The names of `media`, joined.
     pub fn names(&self, media: &[MediumIndex]) -> String {
         let name = |medium: &MediumIndex| Some(self.medium_names[medium.0.checked_sub(1)? as usize].as_str());
         let names: Vec<&str> = media.iter().filter_map(name).collect();
@@ -138,8 +138,7 @@ pub fn build(root: &Object, overrides: Overrides) -> Result<Setup> {
     build_again(root, overrides, None)
 }
 
-/// The same, if `before` was built from the same file and with the same overrides for another time: what has not changed
-/// since is taken from there.
+/// [`build`] with `before`, built from the same file and overrides for another time: unchanged parts are reused.
 pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) -> Result<Setup> {
     plugins::check(root)?;
     let moving = Moving { root: root.clone(), shutter: Shutter::of(root)?, kept: Kept::default() };
@@ -150,13 +149,13 @@ pub fn build_again(root: &Object, overrides: Overrides, before: Option<&Setup>) 
     }
     let scene = Scene { moves: true, ..built.scene };
     let setup = Setup { scene, moving: Some(moving), ..built };
-    // Before hours of rendering, not after.
+    // Errors show now, not after hours of rendering.
     setup.after(shutter.opens)?;
     setup.after(shutter.closes)?;
     Ok(setup)
 }
 
-/// Builds the scene as it is so many seconds `after` its time.
+/// Builds the scene as it is `after` seconds past its time.
 fn assemble(moving: &Moving, overrides: Overrides, before: Option<&Before<'_>>, after: f64) -> Result<Setup> {
     let Moving { root, shutter, kept } = moving;
     let root = &batch::expand(root)?;
@@ -328,7 +327,7 @@ impl<'a> Builder<'a> {
         old.cloned().map_or_else(|| emitter::build(object, self.library), Ok)
     }
 
-    /// The one object behind all references to it, the place among them where it is written.
+    /// The one object behind an id, for all references to it and for its definition.
     fn original(&self, object: &'a Object) -> Result<&'a Object> {
         object.id.as_ref().map_or(Ok(object), |id| self.library.resolve(id, &object.location))
     }
@@ -370,7 +369,7 @@ impl<'a> Builder<'a> {
 
     fn medium(&mut self, object: &'a Object) -> Result<MediumIndex> {
         let object = self.original(object)?;
-        // One that is written twice is one, too: boundaries on both sides of which it lies do not contradict each other.
+        // Two equal descriptions are one medium: boundaries with it on both sides do not contradict each other.
         let place = if varies(object, self.library) { self.place.instance } else { DAffine3::IDENTITY };
         let is_known = |(known, there): (&&Object, &DAffine3)| *there == place && known.says_what(object);
         if let Some(index) = self.medium_objects.iter().zip(&self.medium_places).position(is_known) {
@@ -406,7 +405,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// True of a medium that is not the same everywhere, so that each instance of a group has its own.
+/// True if a medium varies in space, so that each instance of a group has its own.
 fn varies(object: &Object, library: &Library) -> bool {
     let is_volume = volume::ROWS.has(object) && object.plugin != "constvolume";
     let below = |property: &Property| match &property.value {

@@ -5,7 +5,7 @@ use std::{
     sync::{Arc, Mutex, MutexGuard, PoisonError},
 };
 
-/// What was worked out last, and for what: a render begins with what its pilot chose.
+/// The last result and its key: a render begins with what its pilot chose.
 #[derive(Debug, Default)]
 pub struct Memo(Mutex<Known>);
 
@@ -31,9 +31,9 @@ impl Memo {
         }
     }
 
-    /// What `learn` says, once for each `key`.
+    /// What is kept for `key`, or else what `learn` finds.
     pub fn recall<T: Clone + Send + Sync + 'static>(&self, key: String, learn: impl FnOnce() -> T) -> T {
-        // Not while locked: threads that learn may take up other work, which asks for the same.
+        // Learns without the lock: threads that learn may take up other work, which asks for the same key.
         self.known(&key).unwrap_or_else(|| {
             let learnt = learn();
             self.keep(key, learnt.clone());

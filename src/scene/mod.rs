@@ -72,7 +72,7 @@ impl Scene {
         &self.bsdfs[self.surfaces[shape as usize].bsdf as usize]
     }
 
-    /// What `look` sees of the BSDF at `point`, and where its textures are looked up.
+    /// Calls `look` with the BSDF at `point`, and with where its textures are looked up.
     #[inline]
     pub fn at<R>(&self, point: &SurfacePoint, look: impl FnOnce(&Bsdf, Uv) -> R) -> R {
         let surface = self.surface(point.shape);
@@ -80,7 +80,8 @@ impl Scene {
         if surface.detailed { self.knowing(point, bsdf, look) } else { look(bsdf, point.uv) }
     }
 
-    /// The same where textures ask for more than texture coordinates. Apart, so that all other surfaces pay one test.
+    /// The same for textures that need more than texture coordinates. A function of its own, so that other surfaces pay
+    /// one test.
     #[cold]
     #[inline(never)]
     fn knowing<R>(&self, point: &SurfacePoint, bsdf: &Bsdf, look: impl FnOnce(&Bsdf, Uv) -> R) -> R {

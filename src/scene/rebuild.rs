@@ -1,5 +1,5 @@
-//! A scene built again for another moment: what says the same as before is taken from what was built then. Building is
-//! deterministic, so that this changes no bit of the scene.
+//! A scene built again for another moment: parts with unchanged descriptions are reused. Building is deterministic, so
+//! that this changes no bit of the scene.
 
 use super::{
     accel::Geometry,
@@ -18,10 +18,10 @@ use crate::{
 };
 use std::{cell::RefCell, collections::HashMap};
 
-/// Numbers by where what has them is described.
+/// Numbers of things, by the location of their description.
 pub(super) type Numbers = HashMap<Location, usize>;
 
-/// What a scene was built from, and what became of it.
+/// What a scene was built from, and the parts that were built.
 #[derive(Debug, Default)]
 pub(super) struct Parts {
     /// The number of each shape in the geometry,
@@ -44,7 +44,7 @@ pub(super) struct Before<'a> {
     /// What it was built from.
     objects: HashMap<Key<'a>, &'a Object>,
     library: Library,
-    /// Whether what has an id says the same as then.
+    /// By id, whether the object's description is unchanged.
     known: RefCell<HashMap<String, bool>>,
 }
 
@@ -138,7 +138,7 @@ impl<'a> Before<'a> {
         before.is_some_and(|before| self.says_same(before, object, library))
     }
 
-    /// True if `now` says what `before` did, with all that it refers to, and nothing in it drifts.
+    /// True if `now`, with all that it refers to, says the same as `before`, and nothing in it drifts.
     fn says_same(&self, before: &Object, now: &Object, library: &Library) -> bool {
         let is_same = |a: &Value, b: &Value| match (a, b) {
             (Value::Object(a), Value::Object(b)) => self.says_same(a, b, library),

@@ -93,8 +93,8 @@ impl<'a> Sections<'a> {
     }
 }
 
-/// A definition is built even if nothing refers to it, so that a mistake in it is reported. Its position does
-/// not matter to whether it can be built.
+/// Builds a definition that nothing refers to, so that its mistakes are reported. Its position does not matter for
+/// that.
 fn check_definition(object: &Object, library: &Library, time: f64) -> Result<()> {
     let place = Place::new(DVec3::ZERO, time);
     if bsdf::ROWS.has(object) {

@@ -1,9 +1,9 @@
 //! Motion blur: when the shutter is open, and at what time each pass over the image sees the scene.
 //!
-//! All camera and light subpaths of a pass live at one time, so that every connection between them is one of a scene that
-//! stands still. The times of passes are a sequence of the golden ratio, from a random first one: any number of them in a
-//! row, from any pass on, is spread evenly, each alone is uniform, and they have nothing to do with the base-2 points of
-//! low-discrepancy samplers, which count passes too.
+//! All camera and light subpaths of a pass share one time, so that every connection is made in a static scene. The
+//! times of passes are a golden-ratio sequence with a random start. Any consecutive passes are spread evenly, and each
+//! alone is uniform. The sequence is unrelated to the base-2 points of low-discrepancy samplers, which count passes
+//! too.
 
 use super::{batch, sensors};
 use crate::{
@@ -54,7 +54,7 @@ impl Shutter {
         0.5 * (self.opens + self.closes)
     }
 
-    /// How far what moves with velocities within bounds (m/s) gets while it is open, at least and at most (m).
+    /// Displacement, at least and at most (m), while it is open, for velocities within bounds (m/s).
     pub(super) fn ways(self, velocities: [DVec3; 2]) -> [DVec3; 2] {
         let ends = [self.opens, self.closes].into_iter().flat_map(|time| velocities.map(|v| v * time));
         ends.fold([DVec3::ZERO; 2], |[low, high], way| [low.min(way), high.max(way)])
@@ -77,7 +77,7 @@ pub(super) fn check(camera: &Params<'_>) -> Result<()> {
     Ok(())
 }
 
-/// True of what drifts although it says the same at all times: in a wind, or by its own velocity.
+/// True for objects that drift although their description is constant: in a wind, or by their own velocity.
 pub(super) fn drifts(object: &Object) -> bool {
     object.plugin == WIND || object.properties.iter().any(|property| property.name == VELOCITY)
 }

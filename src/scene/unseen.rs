@@ -62,8 +62,9 @@ impl Unseen<'_> {
         }
     }
 
-    /// For each of `media`, whether all that lies in it is shut in with it, as in frosted glass: nothing there emits, and light comes
-    /// and goes by scattering at a closed surface only. `elsewhere` are media that also lie somewhere else.
+    /// For each of `media`, whether all that lies in it is shut in with it, as in frosted glass: nothing there emits,
+    /// and light enters and leaves only by scattering at a closed surface. `elsewhere` are media that also lie
+    /// somewhere else.
     pub(super) fn shut_in(&self, media: &[Medium], elsewhere: &[MediumIndex]) -> Vec<bool> {
         let mut shut_in: Vec<bool> = media.iter().map(|medium| medium.emission.is_none()).collect();
         let lit = self.lights.all.iter().map(|light| light.medium);

@@ -251,7 +251,7 @@ impl Sensor {
         if let Self::Meter(sensor) = self { sensor.is_connectible() } else { true }
     }
 
-    /// What it measures of an even radiance of 1: of irradiance pi.
+    /// Its response to a uniform radiance of 1: of irradiance pi.
     #[inline(always)]
     pub fn response(&self) -> f32 {
         if let Self::Irradiance(_) = self { PI } else { 1.0 }

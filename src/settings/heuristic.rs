@@ -1,5 +1,5 @@
-//! By which rule the strategies that can make a path share it: an axis of variance studies. Under each of them the
-//! weights of a path sum to one, so that all give the same image; what differs is the noise.
+//! MIS heuristics: rules by which the strategies that can make a path share it, an axis of variance studies. The
+//! weights of a path sum to one under each of them. All give the same image; only the noise differs.
 
 use crate::{
     description::{Params, nearest, parameter::Parameter, rows},
@@ -23,7 +23,7 @@ pub enum Heuristic {
         /// Between 0, which would be the balance heuristic, and 1, which would be the maximum heuristic.
         alpha: f32,
     },
-    /// The same for every strategy that can make the path, whose heroes share it in proportion to q.
+    /// The same for every strategy that can make the path; its heroes share it in proportion to q.
     Uniform,
 }
 

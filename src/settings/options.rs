@@ -134,13 +134,14 @@ impl Survival {
     }
 }
 
-/// Which vertices of light subpaths those of a camera subpath are connected with.
+/// Which light vertices the vertices of a camera subpath connect to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Connections {
-    /// Draws from the light subpaths of a block of pixels: as many at every vertex, however long light subpaths are.
+    /// Draws from the light subpaths of a block of pixels: as many at every vertex, whatever the length of light
+    /// subpaths.
     #[default]
     Cached,
-    /// All vertices of one light subpath, with which no other camera subpath is connected (LW96 sec. 4).
+    /// All vertices of one light subpath, which no other camera subpath connects to (LW96 sec. 4).
     All,
 }
 
@@ -168,7 +169,7 @@ impl Sky {
 /// How a first pass is solved (P03T ch. 4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FirstPass {
-    /// By walks where paths end in it for the image's sake, by particles where it is the image: what is not said.
+    /// Default: walks where paths of the image end in it, particles where it is the image.
     #[default]
     Usual,
     /// By walks from the camera, in cells where they came.
@@ -202,12 +203,12 @@ impl FirstPass {
 /// When walks follow a guide.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Guiding {
-    /// [`Self::Auto`] where a pilot chooses among all strategies of bdpt, else [`Self::Never`]: what is not said.
+    /// Default: [`Self::Auto`] where a pilot chooses among all strategies of bdpt, else [`Self::Never`].
     #[default]
     Usual,
     /// Never.
     Never,
-    /// Where it lowers the error by more than it takes, as a few samples foresee.
+    /// Where a few samples predict that it lowers the error by more than it costs.
     Auto,
     /// Always.
     Always,
@@ -228,7 +229,7 @@ pub struct Effort {
     pub light_walks: f32,
     /// Connections from each vertex of the camera subpath to vertices of light subpaths, above 0.
     pub connections: u32,
-    /// Light subpaths start where, as a pilot learns, light reaches the image.
+    /// Light subpaths start where a pilot learnt that light reaches the image.
     pub learnt_starts: bool,
     /// How the environment is found.
     pub sky: Sky,
@@ -277,7 +278,7 @@ pub struct Options {
     pub flat: bool,
     /// With [`Connections::All`] there is one light subpath a pixel sample, whatever `effort` says.
     pub connections: Connections,
-    /// By which they share the paths that several of them can make. All but [`Heuristic::Balance`] run on the profile
+    /// The MIS heuristic by which strategies share paths. All but [`Heuristic::Balance`] run on the profile
     /// `everything`.
     pub heuristic: Heuristic,
     /// Most segments of a path, null boundaries not counted; none for no limit. Paths beyond

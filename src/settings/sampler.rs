@@ -6,8 +6,8 @@ use crate::{
     sampling::Sampler,
 };
 
-/// Every sampler. Those of Mitsuba that stratify do so to spread numbers evenly, each in a way of its own; here all that
-/// is Sobol's sequence. Its default, `independent`, says no more than that nothing was chosen.
+/// Every sampler. Mitsuba's stratified samplers spread numbers evenly, each in a way of its own; here all of them are
+/// Sobol's sequence. `independent`, Mitsuba's default, means that nothing was chosen.
 pub(crate) const ROWS: Registry<Plugin<Option<Sampler>>> = Registry::new(
     "a sampler",
     &[

@@ -1,5 +1,5 @@
-//! `serialized`: Mitsuba's compressed meshes, one or more to a file. The layout is the one that Mitsuba's
-//! documentation of the plugin gives; nothing is believed of a count until the stream has yielded the numbers.
+//! `serialized`: Mitsuba's compressed meshes, one or more to a file, in the layout that Mitsuba's documentation of the
+//! plugin gives. No count is trusted until the stream has yielded the numbers.
 
 use super::{
     mesh::{FACE_NORMALS, Mesh, MeshData},

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::math::{DVec3, Spectrum, SpectrumExt, Uv, Vec2, Wrap, vec2};
 use std::sync::Arc;
 
-/// How colours between pixel centres come about.
+/// Interpolation between pixel centres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Filter {
     Bilinear,

@@ -1,8 +1,9 @@
 //! `noise`: turbulence, max(0, bias + amplitude s), s being a mean of octaves of Perlin's gradient noise.
 //!
-//! Octave i has `frequency` lacunarity^i (in cells per metre) and the weight gain^i. The `style` `turbulence` takes absolute values, so that s is from 0 to 1 with creases; with `fractal` it is from -1 to 1 and smooth.
-//! Where the sum is below 0 the value is 0, which makes clouds with clear air between them. The same `seed` gives the
-//! same noise everywhere.
+//! Octave i has `frequency` lacunarity^i (in cells per metre) and the weight gain^i. The `style` `turbulence` takes
+//! absolute values, so that s is from 0 to 1 with creases; with `fractal` it is from -1 to 1 and smooth. Where the sum
+//! is below 0 the value is 0, which makes clouds with clear air between them. The same `seed` gives the same noise
+//! everywhere.
 //!
 //! There is no closed form along a line.
 

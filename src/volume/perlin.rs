@@ -87,9 +87,9 @@ impl Axis {
     }
 }
 
-/// What Bernstein coefficient number `index` between `a` and `b` has of every power of x: its symmetric multilinear form
-/// of so many b and for the rest a, which is the coefficient of t^n in (1 + a t)^(6 - index) (1 + b t)^index over that
-/// in (1 + t)^6.
+/// Bernstein coefficient number `index` of every power of x between `a` and `b`: its symmetric multilinear form at so
+/// many b and for the rest a. That is the coefficient of t^n in (1 + a t)^(6 - index) (1 + b t)^index over that in
+/// (1 + t)^6.
 #[inline(always)]
 fn blossom(a: f64, b: f64, index: usize) -> [f64; COUNT] {
     let mut product = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -156,8 +156,8 @@ impl Perlin {
         [range[0] * SCALE - ROUNDING, range[1] * SCALE + ROUNDING].map(|end| end.clamp(-1.0, 1.0))
     }
 
-    /// The least and the greatest Bernstein coefficient of the polynomial that the noise, unscaled, is in a part of a cube: sums of
-    /// products of three polynomials, one an axis.
+    /// The least and the greatest Bernstein coefficient of the unscaled noise in a part of a cube, where it is a
+    /// polynomial: sums of products of three polynomials, one an axis.
     fn range_in_cube(&self, x: &Axis, y: &Axis, z: &Axis) -> [f64; 2] {
         let [near, far] = [0, 1].map(|side| self.plane(x.corner.wrapping_add(side), y, z));
         let (mut least, mut most) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);

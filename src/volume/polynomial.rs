@@ -9,9 +9,9 @@
 //! not given) the same is in every such box, side by side without end; with `zero` it is 0 beyond C along the
 //! axes that the function depends on.
 //!
-//! Along a line, what depends on one axis is integrated at no more cost over many boxes than over two. Mixed terms
-//! are integrated box by box; of a line that crosses more than 8192 boxes only as many at its two ends, and what lies
-//! between is taken to be like them.
+//! Along a line, terms of one axis cost no more over many boxes than over two. Mixed terms are integrated box by box.
+//! If a line crosses more than 8192 boxes, only as many at its two ends are integrated, and those between are taken to
+//! be like them.
 
 use super::{
     placed::{COMMON, Function, Line, Placed, parts},

@@ -14,7 +14,7 @@ pub struct Product {
     /// All that does not vary.
     constant: Spectrum,
     factors: Arc<[Volume]>,
-    /// An albedo, of which the rest to 1 is a factor too. Like any albedo it is evaluated everywhere.
+    /// An albedo whose complement, 1 - albedo, is a factor too. Like any albedo it is evaluated everywhere.
     albedo: Option<Arc<Volume>>,
 }
 

@@ -1,6 +1,6 @@
-//! `wind`: a nested volume that drifts with `velocity` (m/s), from where it is at the time 0 to where it is at the
-//! scene's `time` (s) (BMA02 5). What is added to it, in a sum, stays. Of a velocity that changes in time this sees the
-//! mean since 0, which takes it as far.
+//! `wind`: a nested volume that drifts with `velocity` (m/s), from its place at the time 0 to its place at the scene's
+//! `time` (s) (BMA02 5). Other terms of a sum stay. A velocity that changes in time counts by its mean since 0, which
+//! carries as far.
 
 use super::{Place, Volume, VolumeModel, nested};
 use crate::{

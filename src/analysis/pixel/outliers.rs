@@ -1,5 +1,5 @@
-//! The contributions that make single bright pixels, with their paths. Of each pixel the brightest one counts, and of these
-//! come first those without which the image would have the least squared error: an emitter that is seen in every sample of
+//! The contributions that make single bright pixels (fireflies), with their paths. Only the brightest of each pixel
+//! counts. They are sorted by the squared error that they add to the image: an emitter that is seen in every sample of
 //! its pixels is bright, but no noise.
 
 mod page;
@@ -96,14 +96,14 @@ impl Image {
         Self { samples, sums, mean, deviations }
     }
 
-    /// By how much the squared deviations of a pixel, which adds up to `sum`, would be less without a contribution `own` to a
-    /// sample of `all`: sum x^2 - (sum x)^2 / n with it, less the same without it.
+    /// How much a contribution `own` to a sample of `all` adds to the squared deviations of a pixel that adds up to
+    /// `sum`: sum x^2 - (sum x)^2 / n with it, less the same without it.
     fn less(&self, own: f64, all: f64, sum: f64) -> f64 {
         own * (2.0 * all - own) - own * (2.0 * sum - own) / self.samples
     }
 
-    /// Those of `found` without which there would be the least error, no more than `most`, as if nothing else were in their
-    /// samples; of a single sample, which tells of no error, the brightest.
+    /// Those of `found` that add most error, no more than `most`, as if each were alone in its sample; for a single
+    /// sample, which tells of no error, the brightest.
     fn worst(&self, found: Vec<Found>, most: usize) -> Vec<Found> {
         let size = |one: &Found| {
             let own = f64::from(one.luminance);

@@ -55,7 +55,7 @@ pub struct Entry {
     pub notes: Vec<String>,
 }
 
-/// What precedes the first sample of every render, as far as it is done but once: the pilot.
+/// What precedes the first sample of every render and is done only once: the pilot.
 #[derive(Clone, Debug, Default)]
 pub struct Head {
     /// Its processor time (s); its time is in the settings' budget.
@@ -79,7 +79,7 @@ impl Head {
         Ok((found, Self { cpu_seconds, learnt: lights.learnt.kept(), radiance: lights.endings.kept(), plan }))
     }
 
-    /// Leaves with `scene` what was learnt by then, and nothing else: the next render is as the first.
+    /// Restores in `scene` what the pilot learnt, and nothing else: the next render is as the first.
     pub fn put_back(&self, scene: &Scene) {
         scene.lights.learnt.put_back(&self.learnt);
         scene.lights.endings.put_back(&self.radiance);

@@ -62,10 +62,10 @@ pub struct Reference {
     /// What that is known by.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub known_by: Option<String>,
-    /// The means of the renderers that made it together are at most so many standard errors apart; none of one.
+    /// Largest distance between the means of the renderers that made it together, in standard errors; none of one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub apart: Option<f64>,
-    /// Contenders that are made as it is, with other seeds: what they agree with is themselves.
+    /// Contenders rendered as it is, with other seeds: they agree only with themselves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub like: Vec<String>,
 }

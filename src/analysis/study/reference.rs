@@ -57,10 +57,10 @@ fn file(scene: &str, batch: u64) -> PathBuf {
     PathBuf::from(format!("runs/{scene}/reference/{batch}.exr"))
 }
 
-/// How the reference of `scene` is made: by the first of `others` that the contenders are not, whose paths are as long as
-/// those of the deepest contender, and that covers the scene; where there is none, or it is hopelessly noisy, by a contender
-/// as deep with other seeds; and by the first other renderer that takes part, with the same effort. Where `others` are given,
-/// by all of them.
+/// How the reference of `scene` is made. By default, by the first of `others` that no contender is, whose paths are as
+/// long as those of the deepest contender, and that covers the scene. If there is none, or it is hopelessly noisy, by a
+/// contender as deep with other seeds. Besides, by the first other renderer that takes part, with the same effort.
+/// Where `others` are given, by all of them.
 pub fn plan(
     question: &Question,
     scene: usize,
@@ -310,9 +310,8 @@ impl Made {
     }
 }
 
-/// The mean of what all renderers made, each weighted by its precision in the whole image. Where two disagree, the brighter
-/// is taken alone: what a render of rare, bright paths has not found yet makes it darker, and lets it look less noisy than
-/// it is.
+/// The mean over all renderers, each weighted by its precision in the whole image. Where two disagree, the brighter is
+/// taken alone: while rare, bright paths are not found yet, a render is darker, and looks less noisy than it is.
 fn pooled(mut parts: Vec<Made>) -> Truth {
     parts.sort_by(|a, b| b.whole.value.total_cmp(&a.whole.value));
     let (brightest, darkest) = (&parts[0].whole, &parts[parts.len() - 1].whole);

@@ -46,8 +46,8 @@ impl<'a> Clip<'a> {
         }
     }
 
-    /// Builds the scene as `frame` shows it, from what of the frame `before` has not changed. What the user should know has
-    /// been said of the first.
+    /// Builds the scene of `frame`; parts that have not changed since the frame `before` are reused. Warnings were
+    /// given for the first.
     pub(super) fn frame(&self, frame: u32, before: &Setup) -> Result<Setup> {
         let root = self.at(self.time(frame));
         let built = build::build_again(&root, self.arguments.overrides(), Some(before));

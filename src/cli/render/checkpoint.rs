@@ -23,7 +23,7 @@ use std::{
 
 /// Time between two writes of the sums, and before the first one, unless the user wants another.
 const PATIENCE: Duration = Duration::from_secs(60);
-/// Time between two writes over the time that one takes: what is kept costs less than a hundredth of a render.
+/// Time between two writes over the time of one: checkpoints cost less than a hundredth of a render.
 const RESTRAINT: u32 = 128;
 /// Time between two pictures in a viewer.
 const VIEW_EVERY: Duration = Duration::from_millis(500);

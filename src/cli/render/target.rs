@@ -23,7 +23,7 @@ pub(crate) struct Target {
     pub display: Display,
 }
 
-/// What the image is called that nobody gave a name: what is biased says so.
+/// The name of an image that nobody named: biased images say so.
 fn unnamed(arguments: &Render, setup: &Setup) -> PathBuf {
     let name = arguments.scene.name();
     match setup.scene.softened {

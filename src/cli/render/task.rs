@@ -69,8 +69,8 @@ fn settings(arguments: &Render, setup: &Setup) -> Result<(Settings, Option<Choic
     Ok((Settings { budget: Budget { spent, ..budget }, ..settings }, chosen))
 }
 
-/// The budget by which a pilot judges. Parts of one image, which need not know how many there are, choose alike, as for an image
-/// without end.
+/// The budget by which a pilot judges. Parts of one image need not know how many there are. They choose alike, as for
+/// an image without end.
 pub(super) fn to_come(arguments: &Render, setup: &Setup) -> Budget {
     match arguments.samples {
         None => budget(arguments, setup, false),

@@ -36,11 +36,11 @@ pub(super) struct Camera {
     frame: Frame,
 }
 
-/// Where the image is, which a crop window or an offset of the principal point moves out of the camera's axis.
+/// Where the image is: a crop window or an offset of the principal point moves it off the camera's axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Frame {
-    /// The point nearest to the camera's position on the line in the middle of the image, from there, in the scene's coordinates
-    /// (m).
+    /// The point on the ray through the middle of the image that is nearest to the camera, relative to it, in the
+    /// scene's coordinates (m).
     pub origin: DVec3,
     /// The direction of that line, there too: a unit vector.
     pub direction: DVec3,

@@ -103,8 +103,8 @@ impl Server {
         }
     }
 
-    /// True if the question is put to this server by its own name. Another name that leads here is that of a page from
-    /// elsewhere, which is not to look in.
+    /// True if the request names this server. A request under another name comes from a foreign page (DNS rebinding),
+    /// which is not to look in.
     fn is_meant(&self, request: &Request) -> bool {
         let mut hosts = request.headers().iter().filter(|header| header.field.equiv("Host"));
         let names = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{}", self.port));

@@ -1,7 +1,7 @@
-//! Matrices that change in time. Their numbers cannot change one by one: halfway between two turns there would be a squeezed
-//! object. Each matrix is a stretch, then a turn, then a translation (its polar decomposition: Shoemake and Duff 1992, "Matrix
-//! Animation and Polar Decomposition"); stretches and translations change by their numbers, turns about the axis from one to
-//! the next.
+//! Matrices that change in time. Their numbers cannot change one by one: halfway between two rotations there would be a
+//! squeezed object. Each matrix is a stretch, then a rotation, then a translation (its polar decomposition: Shoemake
+//! and Duff 1992, "Matrix Animation and Polar Decomposition"). Stretches and translations are interpolated by their
+//! numbers, rotations about the axis from one to the next.
 
 use crate::{
     description::{
@@ -83,8 +83,8 @@ impl Parts {
         is_affine.then_some(parts)
     }
 
-    /// What lies between `all`, whose numbers are what `of` makes of theirs. A turn has come as far as the angle does that adds up
-    /// from one to the next.
+    /// Interpolates between `all`: `of` makes each number from theirs. A rotation is as far as its angle, summed up
+    /// from key to key.
     pub(super) fn mixed(all: &[Self], of: impl Fn(Vec<f64>) -> f64) -> Self {
         let number = |get: &dyn Fn(&Self) -> f64| of(all.iter().map(get).collect());
         let vector =

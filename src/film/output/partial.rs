@@ -29,7 +29,7 @@ impl Partial {
         sweep(folder, &stem);
         for _ in 0..ATTEMPTS {
             let file = builder(&stem).tempfile_in(folder)?;
-            // Waits for those only that look whether it is abandoned. Some file systems have no locks.
+            // Waits only for those that check whether it is abandoned. Some file systems have no locks.
             let _ = file.as_file().lock();
             if !file.path().exists() {
                 continue;

@@ -53,7 +53,7 @@ fn place(file: &Arc<PathBuf>, text: &str, offset: usize) -> Location {
 /// What was expected, what was found, and what to do.
 type Explanation = (&'static str, String, &'static str);
 
-/// A slip that what is `before` and `after` the place of an error tells, and where it is.
+/// A common slip, told by the text `before` and `after` the place of an error, and where it is.
 fn slip(message: &str, before: &str, after: &str) -> Option<(Explanation, usize)> {
     let word: String = after.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
     let says = |expected, found: &str, remedy| Some(((expected, found.to_owned(), remedy), before.len()));

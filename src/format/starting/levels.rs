@@ -6,7 +6,7 @@ use crate::{
     volume::Volume,
 };
 
-/// Optical thickness that looks like smoke: that of most of it, seen from the camera; less where fire shall shine through.
+/// Optical thickness of most of the smoke, as the camera sees it; less where fire shall shine through.
 const THICKNESS: f64 = 5.0;
 const THICKNESS_OF_FIRE: f64 = 3.0;
 
@@ -17,7 +17,7 @@ const RADIANCE: f64 = 0.6;
 const RAYS: u32 = 48;
 const POINTS: u32 = 96;
 
-/// Points along each side of the box in which smoke is looked for, and the part of the most that counts as some.
+/// Points along each side of the box in which smoke is looked for, and the part of the maximum that counts as smoke.
 const CELLS: u32 = 48;
 const SOME: f32 = 0.01;
 
@@ -39,7 +39,7 @@ pub(super) struct Levels {
     pub emission: f64,
 }
 
-/// What there is of a volume at a point of its coordinates.
+/// Largest channel of a volume at a point of its coordinates.
 fn amount(volume: Option<&Volume>, at: DVec3) -> f32 {
     volume.map_or(0.0, |volume| volume.inside::<Spectrum>(at.as_vec3()).max_element())
 }
@@ -81,7 +81,7 @@ impl Levels {
 }
 
 impl Ray {
-    /// Light that comes to the camera, where a density of 1 is of this extinction.
+    /// Light that comes to the camera if a density of 1 has this extinction.
     fn light(&self, extinction: f64) -> f64 {
         let mut thickness = 0.0;
         let seen = |[density, light]: &[f64; 2]| {
@@ -104,14 +104,14 @@ fn ray(smoke: &Smoke, view: &View, direction: DVec3) -> Option<Ray> {
     (step > 0.0).then(|| Ray { step, points: (0..POINTS).map(values).collect() })
 }
 
-/// The mean of values, each by its own weight: what is 0 does not count, nor does a little more.
+/// The mean of values, each weighted by itself: zeros do not count, and small values hardly.
 fn typical(values: impl Iterator<Item = f64>) -> f64 {
     let [sum, squares] =
         values.fold([0.0, 0.0], |[sum, squares], value| [sum + value, squares + value * value]);
     squares / sum
 }
 
-/// Rounded; none of what is no positive number.
+/// Rounded; none if it is not a positive number.
 fn three_digits(value: f64) -> Option<f64> {
     format!("{value:.2e}").parse().ok().filter(|value: &f64| value.is_normal() && *value > 0.0)
 }

@@ -1,5 +1,5 @@
-//! The tree of a scene as a file in another folder spells it: every object has its tag, names are only those that mean
-//! something, and names of files start at that folder.
+//! The tree of a scene as a file in another folder spells it: every object has its tag, only names with a meaning stay,
+//! and names of files start at that folder.
 
 use super::{
     super::{paths, tags},

@@ -39,8 +39,8 @@ fn tag_in<'a>(value: &'a Value, tags: &'a Tags) -> Option<&'a str> {
     }
 }
 
-/// Drops from the scene `root` what only JSON needs. What is called after its tag has no name, and at the top what is
-/// called after its id has none either.
+/// Drops names in the scene `root` that only JSON needs: those made up from a tag, and at the top those that repeat the
+/// id.
 pub(super) fn drop_made_up(root: &mut Object) {
     let tags = tags(root);
     let referred = referred(root).into_iter().map(str::to_owned).collect();

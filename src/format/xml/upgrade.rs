@@ -1,5 +1,5 @@
-//! Scenes for Mitsuba before version 2. Their names are upgraded as Mitsuba 3 does it, and where it refuses what 0.6 knew
-//! (tags, plugins, coefficients of scattering and absorption), they mean what 0.6 made of them.
+//! Scenes for Mitsuba before version 2. Names are upgraded as in Mitsuba 3. What Mitsuba 3 refuses and 0.6 knew (tags,
+//! plugins, coefficients of scattering and absorption) keeps its meaning in 0.6.
 
 mod medium;
 
@@ -8,11 +8,11 @@ use crate::{
     error::Result,
 };
 
-/// Tags that others have replaced.
+/// Tags with their replacements.
 const TAGS: [(&str, &str); 4] =
     [("animation", "keyframes"), ("camera", "sensor"), ("lookAt", "lookat"), ("luminaire", "emitter")];
 
-/// Plugins that others stand for.
+/// Plugins with their replacements.
 const PLUGINS: [(&str, &str); 6] = [
     ("halton", "ldsampler"),
     ("hammersley", "ldsampler"),

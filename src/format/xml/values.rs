@@ -11,7 +11,7 @@ use crate::{
     math::srgb::Srgb as _,
 };
 
-/// The attributes that a tag may have beside that by which it is known, and how it is read.
+/// The attributes of a tag besides its key, and how its value is read.
 pub(super) struct Row(&'static [&'static str], fn(&Element, &Folders) -> Result<Value>);
 
 const VALUE: &[&str] = &["value"];
@@ -35,7 +35,7 @@ pub(super) const ROWS: Registry<Row> = Registry::new(
     ],
 );
 
-/// The value of `element`, which `row` describes. It is known by the attribute `key`, its name or its time.
+/// The value of `element`, which `row` describes. Its attribute `key` is its name or its time.
 pub(super) fn read(
     Row(attributes, read): &Row,
     element: &Element,
@@ -76,7 +76,7 @@ pub(super) fn blackbody(element: &Element) -> Result<Value> {
     Ok(Value::Object(Object { tag, plugin, id: None, properties: vec![temperature], location }))
 }
 
-/// How numbers between two keys follow from them.
+/// How values between two keys are interpolated.
 pub(super) fn interpolation(attribute: &Attribute) -> Result<Interpolation> {
     let names = Interpolation::NAMES;
     Interpolation::named(&attribute.value).ok_or_else(|| {

@@ -105,7 +105,7 @@ impl Tree {
         self.packs = flats.chunks(4).map(FlatPack::new).collect();
     }
 
-    /// Takes in a primitive; the reference to it, unless it is flat: these go to `flats`, to be packed.
+    /// Adds a primitive and returns its reference. Flat ones go to `flats` instead, to be packed.
     fn add(&mut self, number: u32, primitive: &Primitive, flats: &mut Vec<(u32, Flat)>) -> Option<u32> {
         match primitive {
             Primitive::Flat(flat) => {

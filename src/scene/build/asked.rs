@@ -1,4 +1,4 @@
-//! What textures ask of the surfaces that they are on, beyond texture coordinates; and whether these have it.
+//! What textures require of their surfaces beyond texture coordinates, and whether surfaces have it.
 
 use crate::{
     bsdf,
@@ -8,11 +8,11 @@ use crate::{
     texture,
 };
 
-/// What the textures of a description ask.
+/// What the textures of a description require.
 #[derive(Default)]
 pub(super) struct Asked<'a> {
     attributes: Vec<Wanted<'a>>,
-    /// Of the place: where it is, or how it is parametrised.
+    /// A texture that requires the position or the parametrisation.
     place: Option<&'a Location>,
 }
 
@@ -21,7 +21,7 @@ struct Wanted<'a> {
     name: &'a str,
     location: &'a Location,
     scale: f64,
-    /// The most that they may be, scaled.
+    /// Their upper limit, scaled.
     most: f64,
 }
 
@@ -32,7 +32,7 @@ fn table(object: &Object) -> Option<&'static Table> {
 }
 
 impl<'a> Asked<'a> {
-    /// Of all that `object`, which builds, is made of.
+    /// Of `object`, which builds, and of all its parts.
     pub(super) fn by(object: &'a Object, library: &'a Library) -> Self {
         let mut asked = Self::default();
         asked.walk(object, library, f64::INFINITY);
@@ -74,12 +74,12 @@ impl<'a> Asked<'a> {
         self.place.is_some() || !self.attributes.is_empty()
     }
 
-    /// An error unless `shape`, called `name`, has the colours, of values that are allowed.
+    /// An error unless `shape`, called `name`, has these colours, with values in range.
     pub(super) fn check(&self, shape: &Shape, name: &str) -> Result<()> {
         self.attributes.iter().try_for_each(|wanted| wanted.check(shape, name))
     }
 
-    /// An error if it asks for anything, on behalf of an emitter.
+    /// Emitters provide none of it: an error if anything is required.
     pub(super) fn refuse(&self) -> Result<()> {
         let Some(location) = self.place.or(self.attributes.first().map(|wanted| wanted.location)) else {
             return Ok(());

@@ -12,8 +12,8 @@ use crate::{
 };
 use std::{collections::HashMap, sync::Arc};
 
-/// The instances of a mesh are copies as long as there are few, and all together have at most so many primitives (30 MB):
-/// copies are faster, and where their faces touch others they are set apart.
+/// Up to so many instances of a mesh, with so many primitives in all (30 MB), are copies. Copies are faster, and their
+/// touching faces are set apart.
 const COPIES: u64 = 256;
 const COPIED: u64 = 1 << 16;
 
@@ -25,11 +25,11 @@ const MEMORY_PER_INSTANCE: u64 = 1500;
 pub(super) struct Bases {
     /// By the shape in the group.
     built: HashMap<*const Object, Base>,
-    /// How many instances the scene has, those of groups in groups by themselves.
+    /// How many shapes instances add to the scene; groups in groups are multiplied out.
     instances: u64,
 }
 
-/// A shape around its middle, which is `middle` in the group.
+/// A shape centred at the origin; its centre in the group is `middle`.
 #[derive(Clone, Debug)]
 pub(in crate::scene) struct Base {
     geometry: Arc<Geometry>,
@@ -145,9 +145,9 @@ impl<'a> Builder<'a> {
         self.members(group.object, Some(Copying { instance: object, to_file }))
     }
 
-    /// A shape of a group as one of its instances has it. Meshes that do no more than scatter are shared where copies would
-    /// be large, and other shapes where they cannot be copied: a sphere that is no sphere there. And whether its parameters
-    /// were read for that.
+    /// A shape of a group as one of its instances has it, and whether its parameters were read for that. Meshes that
+    /// only scatter are shared where copies would be large. Other shapes are shared where they cannot be copied: a
+    /// sphere that is no sphere there.
     pub(super) fn copied(
         &mut self,
         params: &Params<'a>,
@@ -190,7 +190,7 @@ fn is_group(object: &Object) -> bool {
     shape::COMPOSED.get(&object.plugin).is_some_and(|plugin| plugin.build == Composed::Group)
 }
 
-/// How many shapes instances put into the scene that `object` is, or a part of. What is `known` of groups is kept.
+/// How many shapes the instances in `object` add to the scene. `known` keeps the counts of groups.
 fn instances(object: &Object, library: &Library, known: &mut HashMap<*const Object, u64>) -> u64 {
     let below = object.properties.iter().filter_map(|property| match &property.value {
         Value::Object(child) => Some(child),

@@ -23,8 +23,7 @@ const MOVABLE: [&str; 3] = ["perspective", "thinlens", "orthographic"];
 const PLACEMENT: &str = "to_world";
 
 impl Setup {
-    /// The steps by which the scene places its camera, in the file's coordinates; an error of a sensor that cannot be put
-    /// elsewhere.
+    /// The transform of the scene's camera, in the file's coordinates; an error for a sensor that cannot be moved.
     pub fn placement(&self) -> Result<&[TransformStep]> {
         let camera = self.camera()?;
         let given = camera.properties.iter().find(|property| property.name == PLACEMENT);
@@ -50,8 +49,8 @@ impl Setup {
         Err(Error::new(&camera.location, expected, format!("\"{}\"", camera.plugin), remedy))
     }
 
-    /// Puts the camera where `steps` say, in the file's coordinates, and `film` into it. What surrounds the camera says
-    /// which medium it is in, whatever the scene states of the place where it was.
+    /// Places the camera by `steps`, in the file's coordinates, with `film`. Its surroundings decide which medium it is
+    /// in; what the scene states for its old place does not count.
     pub fn look(&mut self, steps: &[TransformStep], film: Film) -> Result<()> {
         // What a camera is built from refers to nothing.
         let (camera, library) = (placed(self.camera()?, steps), Library::default());
@@ -62,44 +61,43 @@ impl Setup {
         let start = sensor.ray(middle(&film), Vec2::ZERO).ray.origin;
         let medium = self.scene.medium_at(start).unwrap_or(self.scene.media_map.outside);
         (self.scene.sensor, self.scene.crop, self.film) = (sensor, crop, film);
-        // What was learnt for a camera elsewhere is not true of this one.
+        // What was learnt from another viewpoint does not apply here.
         (self.scene.lights.learnt, self.scene.lights.endings) = (Memo::default(), Memo::default());
         self.enter(medium);
         Ok(())
     }
 
-    /// Has the camera in `medium`, which is no longer one that only light at surfaces gets out of.
+    /// Puts the camera into `medium`, which then no longer counts as shut in.
     pub fn enter(&mut self, medium: MediumIndex) {
         self.scene.media_map.sensor = medium;
         self.scene.media_map.shut_in[medium.0 as usize] = false;
     }
 
-    /// How far the first surface in the middle of the image is from the camera (m), boundaries that light passes left out;
-    /// none where there is nothing.
+    /// Distance from the camera to the first opaque surface in the middle of the image (m); none without one.
     pub fn distance_ahead(&self) -> Option<f64> {
         let ray = self.scene.sensor.ray(middle(&self.film), Vec2::ZERO).ray;
         let met = self.scene.geometry.march(ray).find(|point| !self.scene.surface(point.shape).transmits)?;
         Some(f64::from((met.position - self.scene.sensor.position()).dot(ray.direction)))
     }
 
-    /// The line in the middle of the image: its point nearest to the camera's position, from there (m), and its direction.
+    /// The ray through the middle of the image: its point nearest to the camera, relative to it (m), and its direction.
     pub fn ahead(&self) -> (DVec3, DVec3) {
         let Ray { origin, direction, .. } = self.scene.sensor.ray(middle(&self.film), Vec2::ZERO).ray;
         let position = self.scene.sensor.position();
         let aside = (origin - position).reject_from_normalized(direction);
-        // What rounding makes of nothing.
+        // Less than this is rounding.
         let is_aside = aside.length() > 16.0 * ROUNDOFF * position.abs().max_element();
         (if is_aside { aside.as_dvec3() } else { DVec3::ZERO }, direction.as_dvec3().normalize())
     }
 
-    /// How far the middle of all shapes is from the camera (m); none in a scene without shapes, or with endless ones.
+    /// Distance from the camera to the middle of all shapes (m); none without shapes, or with endless ones.
     pub fn distance_to_middle(&self) -> Option<f64> {
         let bounds = self.scene.geometry.bounds();
         let middle = 0.5 * (bounds.low + bounds.high);
         bounds.is_finite().then(|| f64::from((middle - self.scene.sensor.position()).length()))
     }
 
-    /// How wide the image is at a distance of 1 m from the camera; of parallel rays, at any distance (m).
+    /// Width of the image 1 m from the camera (m); for parallel rays, at any distance.
     pub fn breadth(&self) -> f64 {
         let [width, height] = [self.film.width, self.film.height].map(|pixels| pixels as f32);
         let [left, right] =

@@ -1,4 +1,4 @@
-//! Which media lie where: what boundaries say of each other, those that overlap put in order and open ones closed.
+//! Which media lie where: surveys boundaries, orders overlapping ones and closes open ones.
 
 use super::{Builder, view::Camera};
 use crate::{
@@ -21,12 +21,12 @@ pub(super) struct Surveyed {
     pub survey: Survey,
     pub sensor_medium: MediumIndex,
     pub overlaps: Option<Box<Overlaps>>,
-    /// Boundaries contradict each other even so.
+    /// Boundaries contradict each other even after that.
     pub contradicts: bool,
 }
 
 impl Builder<'_> {
-    /// What is known about where media lie, how far, and the medium of the camera. Boundaries that overlap are put in
+    /// Surveys where media lie, how far they reach, and which one the camera is in. Overlapping boundaries are put in
     /// order, open ones closed.
     pub(super) fn survey(
         &mut self,
@@ -59,7 +59,7 @@ impl Builder<'_> {
         Ok((geometry, Surveyed { known, survey, sensor_medium, overlaps, contradicts }))
     }
 
-    /// What is known without the boundaries that overlap, and what contradicts itself even so.
+    /// What is known without the overlapping boundaries, and the contradictions that remain.
     fn without(
         &mut self,
         overlaps: &Overlaps,
@@ -103,7 +103,7 @@ impl Builder<'_> {
         Known::survey(geometry, &self.surfaces, points, camera.stated.unwrap_or(MediumIndex::VACUUM))
     }
 
-    /// A camera or emitter that states a medium which boundaries that overlap put there says no more than these.
+    /// Forgets media stated by the camera or emitters where overlapping boundaries put the same media.
     fn forget_what_overlaps(&mut self, overlaps: &Overlaps, camera: &mut Camera<'_>) {
         let recentre = self.recentre;
         let forget = |stated: &mut Option<MediumIndex>, position: Option<Vec3>| {
@@ -117,7 +117,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The media that lie where no boundary that overlaps another does.
+    /// The media that lie outside all overlapping boundaries.
     fn bases(&self, camera: &Camera<'_>) -> BTreeSet<u32> {
         let sides =
             self.surfaces.iter().flat_map(|surface| [surface.boundary.interior, surface.boundary.exterior]);

@@ -52,11 +52,11 @@ impl<'a> Builder<'a> {
             let found = "one in a group of shapes, or a reference to one";
             return Err(Error::new(sensor.location, expected, found, "move it into such a shape"));
         }
-        // One that was built before has been read then.
+        // The parameters of a reused shape were read before.
         if is_read {
             params.finish()?;
         }
-        // Instances of what is shared have what the first of them has.
+        // Instances of a shared shape have the attributes of the first one.
         if is_read || is_old {
             asked.check(&shape, &name_of(child.object))?;
         }
@@ -80,7 +80,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// The last shape bounds a medium: if it is a mesh, each of its triangles has to say alike which side is which.
+    /// The last shape bounds a medium: if it is a mesh, all its triangles must agree on which side is which.
     fn mend_container(&mut self, is_exterior_stated: bool, location: &Location) {
         let (Some(Shape::Mesh(mesh)), Some(name)) = (self.shapes.last_mut(), self.shape_names.last()) else {
             return;

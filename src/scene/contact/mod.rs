@@ -1,13 +1,14 @@
 //! Faces that touch, set apart before anything is traced.
 //!
-//! What a picture of two faces in one place should be is the limit of a gap between them, in the order that common sense
-//! gives (along a ray): faces of solids that it leaves, the innermost first; faces that belong to no solid; faces of solids
-//! that it enters, the outermost first. Rays cannot find that order, as they step over whatever lies within the rounding of
-//! a hit. So the gap is made: solids shrink where they touch something, by a few hundred roundings of positions, and of two
+//! The right image of two faces in one place is the limit of a gap between them. Common sense gives the order along a
+//! ray: faces of solids it leaves, the innermost first; faces that belong to no solid; faces of solids it enters, the
+//! outermost first. Rays cannot find that order, as they step over whatever lies within the rounding of a hit. So the
+//! gap is made. Solids shrink where they touch something, by a few hundred roundings of positions. Of two open faces,
+//! the one to be met first moves. Everything else then sees an ordinary scene.
 //! open faces the one that should be met first is moved. Everything else then sees an ordinary scene.
 //!
-//! Where the order above says nothing, index-matched faces come before those that scatter, then those that transmit, those
-//! that emit, and opaque ones; of two alike the first in the file is nearer to the camera, with a warning.
+//! Where that order does not decide, index-matched faces come first, then those that scatter and transmit, then
+//! emitting, then opaque ones. Of two alike, the first in the file is nearer to the camera, with a warning.
 
 mod pairs;
 
@@ -22,7 +23,7 @@ use std::{cell::OnceCell, collections::BTreeMap};
 /// Moves put solids in new places; shapes nested deeper than this are not set apart.
 const ROUNDS: usize = 16;
 
-/// How a face counts among others in the same place: what is less comes first.
+/// Order of faces in the same place: the lesser rank comes first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rank {
     /// Index-matched.
@@ -40,7 +41,7 @@ pub enum Rank {
 pub struct Nature {
     /// Its place in the order.
     pub rank: Rank,
-    /// Its BSDF: which of two alike is seen makes no difference.
+    /// Its BSDF: the order of two faces with the same one does not matter.
     pub bsdf: u32,
     /// It is seen from its front alone.
     pub one_sided: bool,
@@ -61,7 +62,7 @@ pub struct Contact {
     pub shapes: [u32; 2],
     /// The farthest that a face was moved (m).
     pub by: f64,
-    /// Nothing but the order of the file says which of them comes first.
+    /// Only the order of the file decides which of them comes first.
     pub is_tie: bool,
 }
 
@@ -165,15 +166,16 @@ impl<'a> Faces<'a> {
         self.bounds.iter().map(pairs::far).chain(lamps).fold(DVec3::ZERO, DVec3::max)
     }
 
-    /// In proportion to coordinates, how near faces of two shapes may come before rays step over one of them, or meet them in
-    /// the wrong order. Of faces that scatter, what is behind one must not be taken for what is before it either: ends of
-    /// connections keep clear of a surface by half of this where the other end is three times as far away as these shapes.
+    /// How near, relative to coordinates, faces of two shapes may come before rays step over one or meet them in the
+    /// wrong order. Scattering faces need more: what lies behind one must not be taken for what lies before it. Ends of
+    /// connections keep clear of a surface by half of this where the other end is three times as far away as these
+    /// shapes.
     fn closeness(&self, shapes: [u32; 2]) -> f64 {
         let is_null = shapes.iter().any(|shape| self.natures[*shape as usize].rank == Rank::Null);
         f64::from(if is_null { gamma(32) } else { gamma(128) })
     }
 
-    /// What has to move so that a pair is in order; nothing where it is, or where it makes no difference.
+    /// The move that puts a pair in order; none if it is in order, or if order makes no difference.
     fn order(&self, pair: &Pair) -> Option<Move> {
         let [a, b] = [0, 1].map(|i| Face {
             shape: pair.shapes[i],
@@ -221,7 +223,7 @@ impl<'a> Faces<'a> {
         self.nature(face).rank
     }
 
-    /// Light gets by one of both, or both are seen from one side.
+    /// Their order matters: light passes one of them, or both show the same side.
     fn matters(&self, a: Face<'_>, b: Face<'_>) -> bool {
         if !(self.nature(a).is_opaque() && self.nature(b).is_opaque()) {
             return true;
@@ -230,7 +232,7 @@ impl<'a> Faces<'a> {
         one.zip(other).is_none_or(|(one, other)| one * other * facing(a, b) > 0.0)
     }
 
-    /// Of an opaque face, the side that may be seen, as a sign of its patch's normal; none where both may.
+    /// The visible side of an opaque face, as a sign of its patch's normal; none where both are.
     fn shown_side(&self, face: Face<'_>) -> Option<f64> {
         self.outward(face).or_else(|| self.nature(face).one_sided.then(|| self.front(face)))
     }
@@ -250,8 +252,8 @@ impl<'a> Faces<'a> {
         point.shading.normal.as_dvec3().dot(normal).signum()
     }
 
-    /// 1 where the patch's normal points away from the solid that a face bounds, -1 where into it; none where it bounds
-    /// none. The walls of a room are solid outside of it: walls that show their front, or the camera is among.
+    /// 1 where the patch's normal points out of the solid that a face bounds, -1 where into it; none for a face of no
+    /// solid. The walls of a room are solid outside of it: walls that show their front, or that surround the camera.
     fn outward(&self, face: Face<'_>) -> Option<f64> {
         let outward = self.solid(face.shape)? * self.shapes[face.shape as usize].winding(face.primitive);
         if !self.nature(face).is_opaque() {
@@ -277,9 +279,8 @@ impl<'a> Faces<'a> {
         (self.rank(a), a.shape) < (self.rank(b), b.shape)
     }
 
-    /// Of the faces of two solids that face the same way, whether `a` is the inner one; and whether only the file says so, of
-    /// faces that the camera may see.
-    /// The normal of `a` times `outward` points outwards.
+    /// For faces of two solids that face the same way: whether `a` is the inner one, and whether only the file says so
+    /// about faces that the camera may see. The normal of `a` times `outward` points outwards.
     fn inner(&self, a: Face<'_>, b: Face<'_>, outward: f64) -> (bool, bool) {
         let [a_in_b, b_in_a] = [(a, b), (b, a)].map(|(a, b)| self.is_within(a.shape, b.shape));
         if a_in_b != b_in_a {

@@ -1,4 +1,4 @@
-//! Which faces touch: shapes whose boxes meet, and of these the primitives in what the boxes have in common.
+//! Which faces touch: of shapes whose boxes meet, the primitives in the boxes' intersection.
 
 use crate::{
     math::{Bounds, DVec3, Vec3, offset::gamma},
@@ -11,9 +11,9 @@ use obvhs::{
 };
 use std::time::Duration;
 
-/// The most that faces may be apart to count as touching, over coordinates: shapes that are farther apart are not compared.
+/// The largest distance of touching faces, relative to coordinates: shapes that are farther apart are not compared.
 const MOST: f64 = 3e-5;
-/// Rays from farther away than so many times the coordinates of two shapes do not tell where these are.
+/// Rays from farther away, relative to the coordinates of two shapes, cannot resolve their places.
 const BEYOND: f64 = 100.0;
 /// How near faces may come, over their [`Patch::skew`].
 const SKEW: f64 = gamma(48) as f64;
@@ -30,7 +30,7 @@ pub(super) struct Pair {
 /// Two shapes whose boxes meet.
 struct Near<'a> {
     shapes: [&'a Shape; 2],
-    /// What their boxes have in common.
+    /// The intersection of their boxes.
     common: Aabb,
     /// By how much boxes are widened (m).
     slack: Vec3,
@@ -46,8 +46,8 @@ struct Boxed {
     bounds: Aabb,
 }
 
-/// All pairs of faces of different shapes, in their `bounds`, that are nearer than they may be: `closeness` is that of two
-/// shapes over the coordinates between which rays run to them, and `farthest` the largest of the whole scene.
+/// All pairs of faces of different shapes that are nearer than they may be. The shapes have these `bounds`; `closeness`
+/// is the limit for two shapes, relative to the coordinates of rays to them; `farthest` are the largest of the scene.
 pub(super) fn pairs(
     shapes: &[Shape],
     bounds: &[Bounds],

@@ -1,8 +1,8 @@
 //! Which medium fills the space around an emissive medium, where that is certain.
 //!
-//! Points of light are sampled in the box around the medium, and not all of them lie in it. To locate each by rays costs as
-//! much as its walk. But space without surfaces is all of one medium: of the cells of a lattice that no surface enters,
-//! those that are connected are located once, together.
+//! Points of light are sampled in the box around the medium, and not all of them lie in it. Locating each by rays costs
+//! as much as its walk. But connected space without surfaces holds one medium. So each connected set of lattice cells
+//! that no surface enters is located once.
 
 use crate::{
     math::{Bounds, Vec3, measure},
@@ -15,7 +15,7 @@ use crate::{
 const CELLS: f32 = 64.0;
 /// Connected parts that are located: the largest.
 const MOST: usize = 64;
-/// Surfaces reach this far beyond themselves (cells): more than positions are rounded by.
+/// Surfaces are widened by this (cells): more than the rounding of positions.
 const SLACK: f32 = 1e-3;
 
 /// Whether cells of the box around a medium lie in it; none where surfaces are, or it is not certain.
@@ -41,7 +41,7 @@ impl Clearings {
         Self(lattice.fill(|cell| cells[cell as usize]))
     }
 
-    /// Whether `position` lies in the medium, if that is certain: as its cell does, or one beside it that is in sight.
+    /// Whether `position` lies in the medium, if certain: by its cell, or by one beside it that is in sight.
     #[inline]
     pub fn holds(&self, position: Vec3, geometry: &Geometry) -> Option<bool> {
         let cell = self.0.cell_at(position)?;
@@ -79,7 +79,7 @@ fn parts(lattice: &Coarse<()>, geometry: &Geometry) -> Vec<Vec<u32>> {
     parts
 }
 
-/// Of every cell, whether a surface may enter it.
+/// For every cell, whether a surface may enter it.
 fn entered(lattice: &Coarse<()>, geometry: &Geometry) -> Vec<bool> {
     let mut entered = vec![false; lattice.cells().len()];
     let edge = lattice.position(0, Vec3::ONE) - lattice.position(0, Vec3::ZERO);
@@ -99,7 +99,8 @@ fn entered(lattice: &Coarse<()>, geometry: &Geometry) -> Vec<bool> {
     entered
 }
 
-/// True unless `primitive`, whose box meets the one around `centre` that reaches `half` along the axes, surely does not.
+/// True unless `primitive` surely misses the box around `centre` that reaches `half` along the axes. Its own box meets
+/// it.
 fn may_meet(primitive: &Primitive, centre: Vec3, half: Vec3) -> bool {
     match primitive {
         Primitive::Flat(flat) => (centre - flat.corner).dot(flat.normal).abs() <= half.dot(flat.normal.abs()),

@@ -1,4 +1,4 @@
-//! The disks that parallel light leaves: that of a beam, and for an emitter at infinity the one around the scene.
+//! Disks that emit parallel light: that of a beam, or for an emitter at infinity one outside the scene.
 
 use super::light::Light;
 use crate::{
@@ -25,18 +25,18 @@ impl Disk {
         Self { centre, frame: Frame::around(-direction), radius, lift: 0.0 }
     }
 
-    /// That of an emitter at infinity, outside the sphere around `centre` and facing unit `towards`.
+    /// The disk of an emitter at infinity, outside the sphere around `centre` and facing unit `towards`.
     #[inline]
     pub(super) fn around(centre: Vec3, radius: f32, towards: Vec3) -> Self {
         Self { centre, frame: Frame::around(towards), radius, lift: radius }
     }
 
-    /// That of the beam `emitter`, whose centre lies at `centre`.
+    /// The disk of the beam `emitter`, centred at `centre`.
     pub fn of_beam(emitter: &BeamEmitter, centre: Vec3) -> Self {
         Self::new(centre, emitter.direction(), emitter.radius())
     }
 
-    /// That of `light`, if it is a beam.
+    /// The disk of `light`, if it is a beam.
     #[inline]
     pub fn of(light: &Light) -> Option<Self> {
         if let Kind::Beam(emitter) = &light.emitter.kind {
@@ -46,7 +46,7 @@ impl Disk {
         }
     }
 
-    /// Density of its points if all are as likely (1/m^2).
+    /// Uniform density of its points (1/m^2).
     #[inline]
     pub fn pdf_area(&self) -> f32 {
         1.0 / (PI * self.radius * self.radius)
@@ -81,7 +81,7 @@ impl Disk {
         self.frame.to_local(position - self.centre).truncate() / self.radius
     }
 
-    /// The point of it whose light comes to `reference`; none where no light of it does.
+    /// The point whose light reaches `reference`; none where no light of the disk does.
     #[inline]
     pub fn onto(&self, reference: Vec3) -> Option<Vec3> {
         let local = self.frame.to_local(reference - self.centre);
@@ -92,8 +92,8 @@ impl Disk {
 }
 
 impl Disk {
-    /// The first and last distance (m) at which the ray in unit `direction` is in the beam from this disk; at `position`
-    /// it is `distance` from its start. None where it is not in the beam, or for ever.
+    /// The first and last distance (m) at which the ray in unit `direction` is in the beam from this disk. It passes
+    /// `position` at `distance` from its start. None where it is not in the beam, or for ever.
     #[inline]
     pub fn lit_part(&self, position: Vec3, direction: Vec3, distance: f32) -> Option<[f32; 2]> {
         let local = self.frame.to_local(position - self.centre);

@@ -61,7 +61,7 @@ impl EmissionSample {
         Start::towards(self.light, &self.point, self.ray.origin, self.ray.direction)
     }
 
-    /// The same by the mixture of the emitters' own distributions, whose densities it has, and what was `learnt`.
+    /// Replaces the emitters' own densities by those of the mixture with what was `learnt`.
     fn mixed(self, lights: &Lights, learnt: &Starts) -> Self {
         let densities = learnt.densities(lights, &self.start(), self.unlearnt);
         let ratio = self.unlearnt.both() / densities.both();
@@ -71,9 +71,8 @@ impl EmissionSample {
 }
 
 impl Lights {
-    /// Samples an emitter by power, a point on it and a direction, mixed with those that were `learnt`; none where nothing
-    /// leaves. A learnt direction in which nothing leaves the point has a throughput of 0: the point was sampled all
-    /// the same.
+    /// Samples an emitter by power, a point on it and a direction, mixed with what was `learnt`; none where nothing
+    /// leaves. A learnt direction in which the point emits nothing has a throughput of 0, as the point was sampled.
     pub fn sample_emission(
         &self,
         geometry: &Geometry,
@@ -91,8 +90,8 @@ impl Lights {
         Some(self.start(geometry, index, chosen as f32, by, stream)?.mixed(self, learnt))
     }
 
-    /// Samples a start on the emitter `index`, which is chosen with probability `chosen`, by its own distributions or by those
-    /// that were `learnt`; its densities are those of the emitter's own.
+    /// Samples a start on the emitter `index`, chosen with probability `chosen`, by its own distributions or by those
+    /// that were `learnt`. The densities are the emitter's own in both cases.
     fn start(
         &self,
         geometry: &Geometry,
@@ -212,8 +211,8 @@ impl Lights {
         start_of(index, point, ray, [pdf, pdf_direction], throughput)
     }
 
-    /// What the emitter point of a light subpath sends towards unit `towards`, if camera subpaths can hit it; none where
-    /// it does not emit that way.
+    /// The emission of a light subpath's emitter point towards unit `towards`, if camera subpaths can hit it; none
+    /// where it does not emit that way.
     pub fn emission(&self, start: &EmissionSample, towards: Vec3) -> Option<Emitted> {
         match (&self.all[start.light as usize].emitter.kind, &start.point) {
             (Kind::Surface(surface), EmitterPoint::Surface(point)) => {
@@ -234,8 +233,8 @@ impl Lights {
         }
     }
 
-    /// Next-event density over start density of the point a light subpath started from, as seen from its second
-    /// vertex: the ratio that turns the density of s = 2 into that of s = 1 in the weights.
+    /// Next-event density over start density of a light subpath's emitter point, as seen from its second vertex. This
+    /// ratio turns the density of s = 2 into that of s = 1 in the weights.
     #[inline]
     pub fn connect_over_start(
         &self,

@@ -10,18 +10,18 @@ use crate::{
 };
 pub(super) use leaves::Extent;
 
-/// How often an emitter is taken whatever the reference: the tree knows nothing of what stands in the way, and may think
-/// far too little of an emitter.
+/// Probability of sampling regardless of the reference: the tree ignores visibility, and may far underestimate an
+/// emitter.
 const REGARDLESS: f64 = 0.2;
 
 /// The distribution.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LightSampler {
-    /// The emitter that there is no other beside.
+    /// The emitter, if it is the only one.
     only: Option<usize>,
     /// Half by power, half uniform, whatever the reference.
     regardless: Discrete,
-    /// By what each is estimated to give the reference; none where there is nothing to choose. The first leaves are the
+    /// By estimated contribution to the reference; none where there is nothing to choose. The first leaves are the
     /// emitters.
     tree: Option<LightTree>,
     /// The emissive media whose cells are leaves.
@@ -63,7 +63,7 @@ impl LightSampler {
         self.regardless.is_empty()
     }
 
-    /// One for `reference`; of a single one no number is drawn.
+    /// Samples an emitter for `reference`; a single one takes no random number.
     #[inline]
     pub(super) fn sample(&self, reference: Vec3, stream: &mut Stream) -> Taken {
         if let Some(index) = self.only {
@@ -89,7 +89,7 @@ impl LightSampler {
         Taken::Emitter(index, mixed(self.regardless.probability_precisely(index), by_tree))
     }
 
-    /// Probability of the emitter `index`, which is no medium of several leaves, for `reference`.
+    /// Probability of the emitter `index` for `reference`; not for a medium of several leaves.
     #[inline]
     pub(super) fn probability(&self, index: usize, reference: Vec3) -> f32 {
         if let Some(only) = self.only {
@@ -120,8 +120,7 @@ impl LightSampler {
     }
 }
 
-/// Half by power, half uniform among those that have any: a distant strong emitter cannot keep a near weak one from being
-/// found.
+/// Half by power, half uniform over emitters with power: a strong distant one cannot hide a weak near one.
 pub(super) fn regardless(powers: impl Iterator<Item = f64> + Clone) -> Discrete {
     let total: f64 = powers.clone().sum();
     let count = powers.clone().filter(|power| *power > 0.0).count() as f64;

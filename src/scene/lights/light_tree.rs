@@ -1,11 +1,11 @@
 //! A tree over everything that emits, by which next-event estimation finds what lights a point (after Estevez and
 //! Kulla 2018, without their splitting).
 //!
-//! From the root down one of up to four children is chosen, in proportion to the irradiance that each is estimated to
-//! give the reference. The estimate knows the reference's position only, not its normal: light subpaths must find the
-//! same probabilities at the same point. A node is taken for a point that emits as its leaves do on average, see
-//! [`Moments`]; nothing is bounded, so the estimate may be far too low, and whoever asks the tree must at times choose
-//! without it.
+//! The walk down from the root chooses one of up to four children, in proportion to the irradiance that each is
+//! estimated to give the reference. The estimate knows the reference's position only, not its normal: light subpaths
+//! must find the same probabilities at the same point. A node counts as a point that emits as its leaves do on average,
+//! see [`Moments`]. Nothing is bounded, so the estimate may be far too low, and callers must at times choose without
+//! the tree.
 
 mod build;
 mod moments;
@@ -49,7 +49,7 @@ struct Node {
 }
 
 impl Node {
-    /// What each child is estimated to give `reference`, up to a factor, and the sum of it; power alone decides where
+    /// The estimated contribution of each child to `reference`, up to a factor, and their sum; by power alone where
     /// that is beyond f32.
     ///
     /// With v the way from the centre, r^2 = v^2 + softening and e the lobe, that is power (1 - e^2) / (r - e.v)^2: the

@@ -1,11 +1,11 @@
 //! All emitters of a scene: which one is chosen, where its light starts, how a point is connected to it.
 //!
-//! The same emitter point has two densities: that by which light subpaths begin there, and that by
-//! which next-event estimation from a given reference picks it. Both contain the probability of choosing the
-//! emitter: of starts by its power, of next-event estimation by what it is estimated to give the reference. They
-//! are per area (1/m^2) for shapes, discrete for points and single directions, per solid angle (1/sr) for
-//! emitters at infinity, whose "point" is a direction (discrete for a beam, which has one), and per volume (1/m^3) for emissive media.
-//! For how camera subpaths sample a point of those, and so the density of s = 0, see [`Emission::rate`].
+//! An emitter point has two densities: as the start of a light subpath, and as the choice of next-event estimation from
+//! a given reference. Both contain the probability of choosing the emitter: by power for starts, by estimated
+//! contribution to the reference for next-event estimation. Densities are per area (1/m^2) for shapes, discrete for
+//! points and single directions, per solid angle (1/sr) for emitters at infinity, whose "point" is a direction
+//! (discrete for a beam, which has one), and per volume (1/m^3) for emissive media. For how camera subpaths sample a
+//! point in a medium, and so the density of s = 0, see [`Emission::rate`].
 
 mod clearings;
 mod disk;
@@ -49,11 +49,11 @@ pub struct Lights {
     starts: Discrete,
     /// Which emitter a reference point is connected to.
     connections: LightSampler,
-    /// The same without what surrounds the scene; none where there is nothing else, or nothing there.
+    /// The same without the environment; none if there is no environment, or nothing else.
     lamps: Option<LightSampler>,
-    /// Which of those that equiangular sampling applies to it takes.
+    /// Which emitter equiangular sampling takes.
     pivoting: Discrete,
-    /// Of every emitter that it applies to.
+    /// The pivot of each emitter that equiangular sampling applies to.
     pivots: Vec<Option<Pivot>>,
     /// The emitter that each medium is.
     of_media: Vec<Option<u32>>,
@@ -63,7 +63,7 @@ pub struct Lights {
     centre: Vec3,
     /// Its radius (m).
     radius: f32,
-    /// What remains of light from infinity where it enters the scene: 1, or 0 in fog without end.
+    /// Transmittance from infinity to the scene: 1, or 0 in fog without end.
     from_infinity: Spectrum,
     /// What was learnt of paths that reach an image.
     pub learnt: Memo,
@@ -131,7 +131,7 @@ impl Lights {
         self.all.iter().any(|light| light.emitter.is_parallel())
     }
 
-    /// True if next-event estimation may leave what surrounds the scene to other strategies.
+    /// True if next-event estimation may leave the environment to other strategies.
     pub fn has_lamps_besides_sky(&self) -> bool {
         self.lamps.is_some()
     }
@@ -145,8 +145,8 @@ impl Lights {
         }
     }
 
-    /// How often next-event estimation from `reference` would take the emitter `light` under [`Sky::Hit`], over how often it does
-    /// otherwise, if it takes others in proportion.
+    /// The factor by which [`Sky::Hit`] raises the probability that next-event estimation from `reference` takes the
+    /// emitter `light`, if it takes others in proportion.
     pub fn without_sky(&self, light: u32, reference: Vec3) -> f32 {
         match self.environment {
             Some(sky) if sky == light => 0.0,
@@ -176,8 +176,8 @@ impl Lights {
         Disk::around(self.centre, self.radius, towards)
     }
 
-    /// The disk that light of the emitter `index`, which travels in unit `direction`, leaves in parallel; none where light
-    /// leaves points.
+    /// The disk from which the emitter `index` sends parallel light in unit `direction`; none where light leaves
+    /// points.
     #[inline]
     pub(super) fn disk(&self, index: usize, direction: Vec3) -> Option<Disk> {
         let light = &self.all[index];

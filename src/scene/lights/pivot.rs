@@ -1,5 +1,5 @@
-//! Distances along a ray that are denser the nearer to an emitter (Kulla and Fajardo 2012, Importance Sampling Techniques
-//! for Path Tracing in Participating Media, sec. 4); of a beam, those within it.
+//! Equiangular sampling: distances along a ray, denser nearer to an emitter (Kulla and Fajardo 2012, Importance
+//! Sampling Techniques for Path Tracing in Participating Media, sec. 4). For a beam, distances within it.
 
 use super::{Geometry, Lights, disk::Disk, light::Light};
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
 };
 use std::f32::consts::FRAC_PI_2;
 
-/// Points that tell where a shape lies.
+/// Points sampled to find where a shape lies.
 const POINTS: u16 = 64;
 
 /// Where an emitter is, as far as distances to it matter.
@@ -27,7 +27,7 @@ pub enum Pivot {
 pub struct Place {
     /// The point, or the centre of the shape.
     pub position: Vec3,
-    /// How far from it light comes from, root mean square (m).
+    /// Root mean square distance of its light from there (m).
     pub radius: f32,
 }
 
@@ -42,7 +42,7 @@ struct Distances {
 }
 
 impl Pivot {
-    /// That of `light`; none where it is at infinity, in a medium, or cannot be connected to.
+    /// The pivot of `light`; none where it is at infinity, in a medium, or cannot be connected to.
     pub(super) fn of(light: &Light, geometry: &Geometry) -> Option<Self> {
         let around = |shape| {
             let mut stream = Stream::new(0, u64::from(shape), 0, Purpose::Pilot);
@@ -88,7 +88,7 @@ impl Pivot {
 }
 
 impl Place {
-    /// Those of the ray in unit `direction` that is `distance` metres behind its start at `position`; none where it starts
+    /// Distances of the ray in unit `direction` that starts `distance` metres before `position`; none where it starts
     /// at the emitter.
     fn distances(&self, position: Vec3, direction: Vec3, distance: f32) -> Option<Distances> {
         let towards = self.position - position;
@@ -132,8 +132,8 @@ impl Lights {
         Some((index, self.pivots[index].as_ref()?, chosen as f32))
     }
 
-    /// What equiangular sampling needs to know of emitter `index`: where it is, and how often it is chosen over how
-    /// often next-event estimation from `reference` chooses it; none where it does not apply.
+    /// The pivot of emitter `index`, and its probability in equiangular sampling over that in next-event estimation
+    /// from `reference`; none where equiangular sampling does not apply.
     #[inline]
     pub fn pivot(&self, index: u32, reference: Vec3, sky: Sky) -> Option<(&Pivot, f32)> {
         let pivot = self.pivots[index as usize].as_ref()?;

@@ -1,15 +1,15 @@
-//! Learnt starts of light subpaths: which emitter, from where at infinity, in which direction. What light subpaths reach the
-//! image is learnt from paths that any strategy found, and mixed with what the emitters themselves sample, so that no density
-//! is 0 that was not. (In the manner of Vorba et al. 2014, On-line Learning of Parametric Mixture Models for Light Transport
-//! Simulation, who guide emission too; the distributions are those of Mueller et al. 2017.)
+//! Learnt starts of light subpaths: which emitter, from where at infinity, in which direction. Paths of any strategy
+//! show which light subpaths reach the image. What they teach is mixed with the emitters' own distributions, so that no
+//! density becomes 0. (In the manner of Vorba et al. 2014, On-line Learning of Parametric Mixture Models for Light
+//! Transport Simulation, who guide emission too; the distributions are those of Mueller et al. 2017.)
 //!
 //! With P the probability of an emitter, p(x) the density of its point and p(w | x) that of the direction, the mixture is
 //! ```text
 //! a P p(x) p(w | x) + (1 - a) P' p'(x) p'(w | x)
 //! ```
-//! Points on shapes and in media stay as they are, p' = p, so that nothing has to be inverted; p'(w | x) is looked up by
-//! where the point is. From infinity, and of a beam, x is a direction, learnt as one, and w becomes a point on the disk that faces it, looked
-//! up by direction.
+//! Points on shapes and in media stay as they are, p' = p, so that nothing has to be inverted; p'(w | x) is looked up
+//! by position. From infinity, and for a beam, x is a direction, learnt as one. There, w becomes a point on the disk
+//! that faces x, looked up by direction.
 
 use super::{EmitterPoint, Lights};
 use crate::{
@@ -22,13 +22,13 @@ use crate::{
 };
 /// a: the part of the starts that are not learnt.
 const UNLEARNT: f32 = 0.25;
-/// Starts, as [`effective`] counts them, that a cell of positions has at least.
+/// Fewest starts, as [`effective`] counts them, in a cell of positions.
 const PER_CELL: f64 = 256.0;
 /// Levels of cells below the root.
 const LEVELS: u32 = 7;
-/// Starts that tell nothing if there are fewer.
+/// Fewer starts than this tell nothing.
 const ENOUGH: f64 = 16.0;
-/// Of the weight of all starts, the most that one may have: it may be an outlier.
+/// Largest share of one start in the weight of all: it may be an outlier.
 const MOST: f64 = 1.0 / 256.0;
 
 /// Where and which way light leaves.
@@ -84,7 +84,7 @@ pub(super) struct Learnt {
 }
 
 impl Starts {
-    /// What `starts` tell, each with a weight, finite and at least 0; none where that is nothing.
+    /// Learns from `starts`, each with a weight, finite and at least 0; none where they tell nothing.
     pub fn learn(lights: &Lights, mut starts: Vec<(Start, f32)>) -> Option<Self> {
         // Emitters without power are never chosen: they have no density that could be mixed with another.
         starts.retain(|(start, _)| lights.starts.probability(start.light as usize) > 0.0);
@@ -107,7 +107,7 @@ impl Starts {
         Some(Self { emitters, learnt })
     }
 
-    /// The same for `lights`, those of another time; none where they are others.
+    /// The same for `lights` of another time; none if the emitters differ.
     pub fn fitting(&self, lights: &Lights) -> Option<Self> {
         let mut fitting = self.clone();
         if fitting.learnt.len() != lights.all.len() {
@@ -129,7 +129,8 @@ impl Starts {
         UNLEARNT * lights.start_probability(light) + (1.0 - UNLEARNT) * self.emitters.probability(light)
     }
 
-    /// An emitter, its probability without what was learnt, and what was if the start is to be by that.
+    /// An emitter, its probability without what was learnt, and its learnt distributions if the start is to be drawn
+    /// from them.
     #[inline]
     pub(super) fn choose(&self, lights: &Lights, stream: &mut Stream) -> (usize, f64, Option<&Learnt>) {
         let (u, unlearnt) = (stream.uniform_precisely(), f64::from(UNLEARNT));
@@ -141,7 +142,7 @@ impl Starts {
         (index, lights.starts.probability_precisely(index), self.learnt[index].as_ref())
     }
 
-    /// Densities of `start`, which are `unlearnt` without what was learnt.
+    /// Densities of `start`, given its densities `unlearnt` by the emitters alone.
     #[inline]
     pub fn densities(&self, lights: &Lights, start: &Start, unlearnt: Densities) -> Densities {
         let Some(learnt) = &self.learnt[start.light as usize] else {
@@ -174,7 +175,7 @@ impl Starts {
         self.emitters.bytes() + size_of_val(&self.learnt[..]) + learnt
     }
 
-    /// Density of `point` of the emitter `light`, which is `unlearnt` without what was learnt.
+    /// Density of `point` of the emitter `light`, given its density `unlearnt` by the emitter alone.
     pub fn pdf_point(&self, lights: &Lights, light: u32, point: &EmitterPoint, unlearnt: f32) -> f32 {
         // At infinity the point is a direction; elsewhere it is as dense whichever way light leaves it.
         let direction = if let EmitterPoint::Direction(towards) = point { -*towards } else { Vec3::Z };

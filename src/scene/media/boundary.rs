@@ -18,9 +18,9 @@ pub struct Boundary {
 }
 
 impl Boundary {
-    /// What a file states. Light that gets through a surface must be in some medium behind it: if one side is stated,
-    /// the other is vacuum, as in Mitsuba. Nothing gets through an opaque one, and a side that is not stated says
-    /// nothing.
+    /// The boundary that a file states. Light that passes a surface must be in some medium behind it: if one side is
+    /// stated, the other is vacuum, as in Mitsuba. Nothing passes an opaque surface, so its unstated side stays
+    /// unknown.
     pub fn stated(interior: Option<MediumIndex>, exterior: Option<MediumIndex>, transmits: bool) -> Self {
         if !transmits || (interior.is_none() && exterior.is_none()) {
             return Self { interior, exterior };

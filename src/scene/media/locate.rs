@@ -1,9 +1,8 @@
 //! Which medium a point lies in, where nothing states it: the camera, emitters, infinity.
 //!
-//! Evidence flows along unblocked segments from where the medium is known: the sides of boundaries, a camera or emitters
-//! that state theirs. From a point, rays are aimed at these, and go on from walls that say nothing: all
-//! points connected by unblocked segments lie in one medium. A guess (nothing unblocked was found) is weaker,
-//! and the caller must warn about it.
+//! The medium is known at the sides of boundaries, and at a camera or emitters that state theirs. From a point, rays
+//! are aimed at these, and go on from walls that say nothing: all points connected by unblocked segments lie in one
+//! medium. Where no unblocked segment leads to evidence, the answer is a guess, and the caller must warn about it.
 
 mod known;
 
@@ -28,7 +27,7 @@ const RAYS_PER_SIDE: usize = 64;
 const LONGEST_CHAIN: u32 = 8;
 /// Chains that are tried around a point.
 const CHAINS: usize = 128;
-/// Pieces of evidence that settle the medium of a point where all agree; where not, so many that one is less than a slip.
+/// Pieces of evidence that settle the medium of a point if all agree; if not, so many that one counts less than a slip.
 const ENOUGH: u32 = 8;
 const ENOUGH_OF_DOUBT: u32 = 512;
 /// Shares of evidence below this are attributed to rays that slipped through an edge: of those aimed at boxes, three in a
@@ -202,8 +201,8 @@ impl Locator<'_> {
         }
     }
 
-    /// Looks at a boundary from somewhere on a `ray` in `medium` that meets nothing: where that is open, as a cylinder is
-    /// at its ends, both of its sides are seen from one place.
+    /// Looks back at a boundary from a place on a `ray` in `medium` that meets nothing. Where the boundary is open, as
+    /// a cylinder is at its ends, one place sees both of its sides.
     fn look_back(
         &self,
         ray: &Ray,
@@ -267,7 +266,7 @@ impl Locator<'_> {
         }
     }
 
-    /// What light from infinity that starts at `origin` in `direction` is in.
+    /// The medium in which light from infinity starts at `origin` in `direction`.
     pub(crate) fn at_infinity(&self, origin: Vec3, direction: Vec3) -> MediumIndex {
         let ray = Ray { origin, direction, t_max: f32::INFINITY };
         match boundary::first(self.geometry, self.surfaces, ray, false) {
@@ -320,8 +319,8 @@ impl Locator<'_> {
         None
     }
 
-    /// A ray from `origin`: half of them in a random direction, or `leaving`; half aimed at a boundary, or at a point of
-    /// known medium, where they end.
+    /// A ray from `origin`. Half of these rays go in a random direction, or `leaving`. Half are aimed at a boundary,
+    /// or at a point of known medium, where they end.
     fn aim(&self, origin: Vec3, leaving: Option<Vec3>, stream: &mut Stream) -> (Ray, Option<MediumIndex>) {
         let Known { boundaries, points, .. } = self.known;
         if stream.uniform() < 0.5 {
@@ -353,7 +352,7 @@ impl Locator<'_> {
     }
 }
 
-/// A direction from a wall with this unit normal, as matt paint would scatter it.
+/// A cosine-distributed direction from a wall with this unit normal.
 fn diffuse(normal: Vec3, stream: &mut Stream) -> Vec3 {
     Frame::around(normal).to_world(warp::to_cosine_hemisphere(stream.square())).normalize()
 }

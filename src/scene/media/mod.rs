@@ -45,15 +45,15 @@ pub struct MediaMap {
     pub known: Known,
     /// What lies where boundaries of media overlap; none where none do.
     pub overlaps: Option<Box<Overlaps>>,
-    /// What walks carry from where a boundary says that they are in another medium than they are in; only in scenes whose
-    /// boundaries contradict each other.
+    /// The medium of walks beyond a boundary that contradicts theirs; only in scenes whose boundaries contradict each
+    /// other.
     pub nowhere: Option<MediumIndex>,
     /// For each medium: no emitter, and nothing outside of it, is seen from anywhere in it.
     pub(super) shut_in: Vec<bool>,
 }
 
 impl MediaMap {
-    /// What `medium` is without the boundaries that overlap.
+    /// What `medium` is without the overlapping boundaries.
     fn base(&self, medium: MediumIndex) -> MediumIndex {
         self.overlaps.as_ref().map_or(medium, |overlaps| overlaps.base(medium))
     }
@@ -71,7 +71,7 @@ impl Scene {
         self.media_map.shut_in[medium.0 as usize]
     }
 
-    /// The medium that a ray is in when it leaves `point` in `direction`, which came from the direction `incoming`, in
+    /// The medium of a ray that leaves `point` in `direction`, for a walk that came from the direction `incoming` in
     /// `medium`.
     #[inline]
     pub fn medium_towards(
@@ -97,9 +97,9 @@ impl Scene {
         here.is_some_and(|here| here != self.media_map.base(medium))
     }
 
-    /// True unless boundaries contradict each other about the two ends of a segment that meet in the media `a` and `b`.
-    /// Light that came around an open boundary to where its sides say that it is not carries nothing: whichever end a path
-    /// is followed from, it carries something in the same media or in none.
+    /// True unless boundaries contradict each other about a segment whose ends meet in the media `a` and `b`. Light
+    /// that came around an open boundary, to where its sides state another medium, carries nothing. A path thus carries
+    /// something in the same media or in none, whichever end it is followed from.
     #[inline]
     pub fn agree(&self, a: MediumIndex, b: MediumIndex) -> bool {
         self.media_map.nowhere.is_none_or(|nowhere| self.agree_beyond(nowhere, a, b))
@@ -111,8 +111,8 @@ impl Scene {
         a != nowhere && self.media_map.base(a) == self.media_map.base(b)
     }
 
-    /// The medium in which light of an emitter's point `sample` sets out in the unit direction `towards`, to arrive in
-    /// `medium`: only where boundaries contradict each other may it be another than the way back says.
+    /// The medium in which light leaves the emitter's point `sample` in unit `towards`, to arrive in `medium`. It
+    /// differs from the medium of the way back only where boundaries contradict each other.
     #[inline]
     pub fn medium_of(&self, sample: &EmitterSample, towards: Vec3, medium: MediumIndex) -> MediumIndex {
         // A walk meets the emission of a medium only in that medium.
@@ -129,7 +129,7 @@ impl Scene {
         }
     }
 
-    /// The medium that a ray in `direction` is in which has passed `point` from within `medium`. Opaque surfaces are passed
+    /// The medium of a ray in `direction` after it has passed `point` from within `medium`. Opaque surfaces are passed
     /// where they are hidden, as if they were not there.
     #[inline]
     pub fn medium_beyond(&self, point: &SurfacePoint, direction: Vec3, medium: MediumIndex) -> MediumIndex {
@@ -172,8 +172,7 @@ impl Scene {
         self.locator().along(origin, direction).unwrap_or(light.medium)
     }
 
-    /// True if `position` lies in the emissive medium that `light` is, as far as a ray from there towards `direction` can
-    /// show.
+    /// True if `position` lies in the emissive medium `light`, as far as a ray from there towards `direction` can show.
     #[inline]
     pub fn is_lit(&self, light: u32, position: Vec3, direction: Vec3) -> bool {
         let Light { clearings, medium, .. } = &self.lights.all[light as usize];

@@ -1,14 +1,14 @@
 //! Media whose boundaries overlap: which of them lie at a point.
 //!
-//! A closed boundary puts its interior in the place of its exterior. Where several hold a point, each does so: media that
-//! overlap are all there, and their coefficients add; one that is there by two boundaries is there once; a bubble takes away
-//! what it states as its exterior, by whichever boundary that is there, unless the boundary lies within the bubble. That
-//! depends on the point alone, so camera and light subpaths cannot differ, which they would if each crossing switched from
+//! A closed boundary replaces its exterior by its interior. Where several hold a point, each does so. Overlapping media
+//! are all there, and their coefficients add; a medium of two boundaries is there once. A bubble takes away the medium
+//! that it states as its exterior, whichever boundary put it there, unless that boundary lies within the bubble. That
+//! depends on the point alone, so camera and light subpaths cannot differ. They would if each crossing switched from
 //! one medium to another.
 //!
-//! Only scenes whose boundaries overlap have this. Walks then carry the index of a region, which stands behind the
-//! indices of media: what would be there without these boundaries (their base, which walks find as in other scenes),
-//! and the boundaries that hold the part of the ray at hand.
+//! Only scenes whose boundaries overlap have this. Walks then carry the index of a region, which follows the indices of
+//! media. A region has a base, the medium without these boundaries (walks find it as in other scenes), and the
+//! boundaries that hold the current part of the ray.
 
 use super::{boundary::Boundary, locate::Survey, solid::Solid};
 use crate::{
@@ -27,7 +27,7 @@ const MOST_TESTS: u64 = 200_000_000;
 /// Larger shapes are examined only if rays show that they overlap others.
 const MOST_PRIMITIVES: usize = 100_000;
 
-/// More regions than these are not foreseen, but looked for.
+/// Beyond this number, regions are not enumerated but looked for.
 const FORESEEN: usize = 4096;
 
 /// Points at which they are looked for.
@@ -40,8 +40,8 @@ pub struct Overlaps {
     /// How many media there are besides.
     media: usize,
     regions: Vec<Region>,
-    /// From a medium or region, and the number of one more boundary, to the region where that is too. Those of a region
-    /// come in ascending order.
+    /// Maps a medium or region, and the number of one more boundary, to the region with that one too. Boundaries are
+    /// added in ascending order.
     next: HashMap<(MediumIndex, usize), MediumIndex>,
     /// Numbers of boundaries, the first of which lies within the second.
     nested: BTreeSet<(usize, usize)>,
@@ -69,8 +69,8 @@ struct Region {
 }
 
 impl Overlaps {
-    /// The closed boundaries that overlap, by points that they hold or by what rays of a `survey` met, and all that lie in
-    /// or across these.
+    /// Finds the closed boundaries that overlap, by points that they hold or by what rays of a `survey` met, and all
+    /// that lie in or across these.
     pub fn find(geometry: &Geometry, surfaces: &[Surface], survey: &Survey) -> Self {
         let closed = |shape: &u32| {
             let Surface { boundary, transmits, .. } = surfaces[*shape as usize];
@@ -96,8 +96,8 @@ impl Overlaps {
         self.boundaries.is_empty()
     }
 
-    /// Takes these boundaries from `surfaces`: what is left is what lies there without them. Walls do not say what they
-    /// stand in where it is only a part of that.
+    /// Takes these boundaries from `surfaces`, which then describe the media without them. Walls lose media that are
+    /// only a part of what lies there.
     pub fn take_from(&self, surfaces: &mut [Surface]) {
         for boundary in &self.boundaries {
             surfaces[boundary.shape as usize].boundary = Boundary::default();
@@ -110,8 +110,8 @@ impl Overlaps {
         }
     }
 
-    /// Finds the regions, of as many `media`, on top of each of `bases`: all that boxes of boundaries allow, the smaller
-    /// sets of boundaries first; of very many, those that hold points.
+    /// Finds the regions on top of each of `bases`, for this many `media`: all that boxes of boundaries allow, smaller
+    /// sets of boundaries first; if very many, those that hold points.
     pub fn find_regions(&mut self, media: usize, bases: &BTreeSet<u32>) {
         self.media = media;
         self.find_nested();
@@ -166,13 +166,13 @@ impl Overlaps {
         there.map(|(medium, _)| medium).collect::<BTreeSet<_>>().into_iter().collect()
     }
 
-    /// True if boundary number `taker` takes `medium` away that is there `by` another, or without any.
+    /// True if boundary `taker` takes away a `medium` that boundary `by`, or none, put there.
     fn takes(&self, taker: usize, medium: MediumIndex, by: Option<usize>) -> bool {
         let is_spared = by.is_some_and(|by| by == taker || self.nested.contains(&(by, taker)));
         self.boundaries[taker].outside == medium && !is_spared
     }
 
-    /// All pairs of boundaries one of which lies within the other.
+    /// Finds which boundaries lie within which.
     fn find_nested(&mut self) {
         let numbers = 0..self.boundaries.len();
         let pairs = numbers.clone().flat_map(|inner| numbers.clone().map(move |outer| (inner, outer)));
@@ -292,8 +292,8 @@ impl Near {
         self.pairs.iter().flat_map(|pair| pair.shapes).collect()
     }
 
-    /// Those that overlap: at some point no order of crossing all that hold it makes the medium before one what it states
-    /// as its exterior, or the medium before all is another than elsewhere.
+    /// Boundaries that overlap: those that hold some point cannot be crossed in any order so that each finds the
+    /// exterior it states, or the medium before all of them is another than elsewhere.
     fn contradictory(&self, boundaries: &[ClosedBoundary]) -> BTreeSet<u32> {
         let mut found = BTreeSet::new();
         let tests = 3 * self.pairs.len() as u64 * boundaries.len() as u64;

@@ -116,7 +116,7 @@ impl Names<'_> {
         self.library.warn(&self.locations[at.shape as usize], &text);
     }
 
-    /// Faces in one place, of which nothing but the file says which is before the other: each pair of shapes once.
+    /// Warns of faces in one place whose order only the file decides: each pair of shapes once.
     pub(crate) fn warn_of_ties(&self, contacts: &[Contact]) {
         let by = contacts.iter().map(|contact| contact.by).fold(0.0, f64::max);
         let ties = contacts.iter().filter(|contact| contact.is_tie);
@@ -198,8 +198,8 @@ pub(crate) struct Placement<'a> {
     pub ambient: MediumIndex,
 }
 
-/// The medium of a camera whose ray through the middle of the image starts at `start`, and which states none;
-/// if it is a guess, it also serves as evidence for others.
+/// The medium of a camera that states none. Its ray through the middle of the image starts at `start`. A guess also
+/// serves as evidence for others.
 pub(crate) fn place_camera(
     geometry: &Geometry,
     surfaces: &[Surface],

@@ -1,5 +1,5 @@
-//! What single precision can hold: which media, of which sizes, the image is right for. Whatever lies beyond is reported
-//! when the scene is built.
+//! Limits of single precision: densities and sizes of media for which the image is right. Media beyond them are
+//! reported when the scene is built.
 
 use super::extents::Extents;
 use crate::{
@@ -44,7 +44,7 @@ pub(crate) fn check(
     Ok(())
 }
 
-/// How often a path scatters before it is absorbed, or has found out of a medium of so many mean free paths.
+/// Scatterings of a path before it is absorbed or leaves a medium `thickness` mean free paths thick.
 fn scatterings(medium: &Medium, thickness: f32) -> f64 {
     let absorbed = 1.0 - f64::from(medium.bound().survival());
     f64::from(thickness).powi(2).min(1.0 / absorbed.max(0.0))

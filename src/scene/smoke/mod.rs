@@ -1,7 +1,7 @@
 //! `smoke`: a volume file as a user of Blender or Houdini has it, put into a scene like a shape.
 //!
-//! It is no model of its own: before anything is built, it is replaced by what twenty lines of a scene would say, a
-//! `cube` of `null` around the grid's box whose interior is a medium made of `gridvolume`s. Nothing else knows of it.
+//! It is no model of its own. Before anything is built, it is replaced by twenty lines of ordinary scene: a `cube` of
+//! `null` around the grid's box, whose interior is a medium made of `gridvolume`s. Nothing else knows of it.
 
 mod parameters;
 mod parts;
@@ -55,8 +55,8 @@ fn smokes(object: &Object) -> Box<dyn Iterator<Item = &Object> + '_> {
     }))
 }
 
-/// `root` with all smoke in it replaced, and what that was made of. Smoke has room to move while the `shutter` is open; what
-/// files hold is `kept`.
+/// `root` with all smoke in it replaced, and what the smoke was made of. Smoke has room to move while the `shutter` is
+/// open. Contents of files are `kept`.
 pub(super) fn expand<'a>(
     root: &'a Object,
     shutter: Shutter,
@@ -106,7 +106,7 @@ impl Replaced {
     }
 }
 
-/// True unless the first camera has +z up, as in scenes from Blender: they take its files as they are.
+/// True unless the first camera has +z up, as in scenes from Blender, which take Blender's files unturned.
 fn is_y_up(root: &Object) -> bool {
     let sensor = root.properties.iter().find_map(|property| match &property.value {
         Value::Object(child) => Some(child).filter(|child| sensor::ROWS.has(child)),
@@ -119,8 +119,8 @@ fn is_y_up(root: &Object) -> bool {
     up.z.abs() <= up.y.abs()
 }
 
-/// The shape that `smoke` stands for, the medium in it, and what that was made of. A file whose +z is up is turned where it
-/// has to be and nothing in the scene turns it.
+/// The shape that `smoke` stands for, its medium, and what they were made of. A file with +z up is turned where
+/// necessary, unless the scene turns it.
 fn container(
     smoke: &Object,
     library: &Library,

@@ -31,7 +31,7 @@ pub struct Parameters<'a> {
     pub density_scale: f64,
     /// Brightness: 1 m of fire radiates so much of what a black body of its temperature does (1/m).
     pub emission_scale: f64,
-    /// Fraction of light that is scattered, not absorbed; where a grid gives a colour, a factor of that.
+    /// Single-scattering albedo; a factor of it where a grid gives a colour.
     pub albedo: Option<Spectrum>,
     /// What a velocity of 1 stands for (m/s in the file's world); 1 where nobody says.
     pub velocity_scale: Option<f64>,
@@ -114,8 +114,8 @@ impl<'a> Parameters<'a> {
     }
 }
 
-/// `filename`: a .vdb, .nvdb or .vol file, or numbered ones (`smoke_####.vdb`, `smoke_%04d.vdb`), of which frame
-/// `first_frame` (by default the first that there is) is shown at the time 0, and `fps` (24) of them in a second.
+/// `filename`: a .vdb, .nvdb or .vol file, or numbered ones (`smoke_####.vdb`, `smoke_%04d.vdb`). Of these, frame
+/// `first_frame` (by default the first that exists) is shown at time 0, and `fps` (24) frames a second.
 fn read_file(params: &Params<'_>, time: f64) -> Result<Shown> {
     let fps = params.float("fps")?;
     let first = params.optional_integer("first_frame")?;
@@ -137,8 +137,8 @@ fn read_file(params: &Params<'_>, time: f64) -> Result<Shown> {
     Ok(Shown { path, name, sequence: Some(sequence) })
 }
 
-/// `density_grid`, `temperature_grid`, `color_grid`, `velocity_grid`: names of grids, where they are not known by their names; "" takes
-/// none. `level_set_to_fog` (false): fills surfaces. Nothing glows where `emission_scale` is 0.
+/// `density_grid`, `temperature_grid`, `color_grid`, `velocity_grid`: names of grids that are not known by their names;
+/// "" takes none. `level_set_to_fog` (false): fills surfaces. Nothing glows where `emission_scale` is 0.
 fn wanted<'a>(params: &Params<'a>, emission_scale: f64) -> Result<Wanted<'a>> {
     let temperature = params.optional_string("temperature_grid")?;
     Ok(Wanted {

@@ -6,7 +6,7 @@
 //! written as a stream; of NanoVDB, layouts other than 32, types other than float, Vec3f and the quantised floats, and
 //! memory dumps without a file's header. Checksums are not verified.
 //!
-//! Nothing is believed of a size until the file has yielded the bytes: a broken or hostile file ends in a [`Problem`].
+//! No size is trusted until the file has yielded the bytes: a broken or hostile file ends in a [`Problem`].
 
 mod blosc;
 mod choice;

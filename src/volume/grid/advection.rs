@@ -1,5 +1,6 @@
-//! Smoke that its velocity carries along while the shutter is open (semi-Lagrangian advection): t seconds after the time of its
-//! file, the value at x is what the file has at x - v(x) t. What comes of it is a grid like any other, exact for every tracker.
+//! Smoke that its velocity carries along while the shutter is open (semi-Lagrangian advection): t seconds after the
+//! time of its file, the value at x is what the file has at x - v(x) t. The result is a grid like any other, exact for
+//! every tracker.
 
 use super::{
     super::{Samples, files},
@@ -59,7 +60,8 @@ impl Velocity {
         Ok(Self { to_samples: grids.iter().map(of_grid).collect(), grids, scale, range })
     }
 
-    /// At `position` of the file's world; beyond the active voxels what the nearest have: what leaves them moves on.
+    /// The velocity at `position` in the file's world. Beyond the active voxels the nearest ones count: smoke that
+    /// leaves them moves on.
     fn at(&self, position: DVec3) -> DVec3 {
         let of = |number: usize| -> DVec3 {
             let at = self.to_samples[number].transform_point3(position);
@@ -117,7 +119,7 @@ impl Flow {
     }
 }
 
-/// From where to where what a grid holds is carried, in units of its voxels.
+/// Where the contents of a grid are carried, in units of its voxels.
 struct Drift<'a> {
     /// From indices of the file's samples to its world.
     to_file: DAffine3,
@@ -133,7 +135,7 @@ struct Drift<'a> {
     size: [usize; 3],
 }
 
-/// How many times its size what is carried may get away: what gets farther has velocities of another unit.
+/// How far contents may be carried, in sizes of the grid: beyond this, velocities must have another unit.
 pub const FARTHEST: f64 = 100.0;
 
 /// Says that something is carried so many times its size.
@@ -207,7 +209,7 @@ impl<'a> Drift<'a> {
         self.to_way * self.velocity.at(self.to_file.transform_point3(at))
     }
 
-    /// The value of all of the block from `first` on, if wherever it may come from has that.
+    /// The single value of the block from `first` on, if all places it may come from have it.
     fn known<V: Carried>(&self, samples: &dyn Samples<V>, first: [usize; 3]) -> Option<V> {
         let start = |axis: usize| first[axis] as f64 + self.first[axis] as f64;
         let low = axes(|axis| (start(axis) - self.range[1][axis]).floor() - 1.0);

@@ -8,7 +8,7 @@ use crate::math::{Wrap, axes};
 /// Cells along a side of a brick.
 pub(super) const BRICK: usize = 8;
 
-/// How values between samples come about.
+/// Interpolation between samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filter {
     /// Trilinear interpolation; the cells lie between sample centres.
@@ -24,7 +24,7 @@ pub(super) struct Extent {
     pub first: [i64; 3],
     /// Cells along x, y and z, each at least 1.
     pub cells: [usize; 3],
-    /// What of them counts for means: from where to where, in cells.
+    /// The part of them that counts for means: its two corners, in cells.
     pub counted: [[f64; 3]; 2],
 }
 
@@ -55,7 +55,7 @@ pub(super) struct Lattice<V> {
     pub cells: [usize; 3],
     /// Bricks along x, y and z.
     pub size: [usize; 3],
-    /// How values between samples come about.
+    /// Interpolation between samples.
     pub filter: Filter,
     /// All bricks, x fastest.
     pub bricks: Vec<Brick<V>>,
@@ -219,8 +219,8 @@ impl<V: Voxel, S: Samples<V> + ?Sized> Reader<'_, V, S> {
         Brick { values: Some(boxed(self.scratch.iter().copied())), mean, least, most }
     }
 
-    /// The corners of a brick along an axis, as indices of the endless lattice. What no cell reaches repeats the last
-    /// that one does, so that it makes no brick less uniform and no bound wider.
+    /// The corners of a brick along an axis, as indices of the endless lattice. Corners that no cell reaches repeat the
+    /// last one that a cell does, so that they make no brick less uniform and no bound wider.
     fn corners(&self, axis: usize, brick: usize) -> [i64; SIDE] {
         let last = match self.filter {
             Filter::Trilinear => self.extent.cells[axis],

@@ -44,8 +44,7 @@ pub struct Outlier {
     pub times_mean: f64,
     /// Its share of the pixel, by luminance; none where that is black.
     pub pixel_share: Option<f64>,
-    /// The part of the image's squared error, as its samples tell of it, that there would not be without it, by luminance; none
-    /// of a single sample.
+    /// The part of the image's squared error that it adds, as its samples tell, by luminance; none of a single sample.
     pub error_share: Option<f64>,
     /// What the strategy would contribute alone: contribution over density and samples.
     pub unweighted: [f32; 3],

@@ -93,7 +93,7 @@ fn coefficients(object: &mut Object) -> Result<()> {
     Ok(())
 }
 
-/// The sum of two values, and the share of the first; none where they are of several wavelengths that differ.
+/// The sum of two values, and the first as a part of it; none for spectra at different wavelengths.
 fn sum(first: &Value, second: &Value) -> Option<(Value, Value)> {
     let share = |a: f64, b: f64| if a + b == 0.0 { 0.0 } else { a / (a + b) };
     if let (Value::Spectrum(a), Value::Spectrum(b)) = (first, second) {

@@ -26,7 +26,7 @@ pub(crate) struct Extent<'a> {
     pub radius: f32,
 }
 
-/// Rays of all emitters together that are looked at for what they are like.
+/// Rays sampled of all emitters together, to estimate their moments.
 const RAYS: usize = 1 << 20;
 
 /// The fewest and the most of one emitter.
@@ -35,7 +35,7 @@ const RAYS_OF_ONE: [usize; 2] = [16, 256];
 /// The least light of a ray, in any unit.
 const DARK: f64 = 1e-37;
 
-/// What is nearer than this part of the scene's radius is no nearer.
+/// Distances below this part of the scene's radius make no difference.
 const NEAREST: f64 = 1e-6;
 
 /// Infinity, in radii of the scene: as far around it, light from there is the same everywhere.
@@ -44,9 +44,10 @@ const REACH: f64 = 1e4;
 /// Media of more cells are one leaf: trees fit into memory.
 const MOST_CELLS: usize = 1 << 17;
 
-/// Media whose light comes from within so many radii of the scene of its centre (root mean square) are one leaf.
-/// Measured: cells gain 1.25 in a smoky hall with a row of twelve flames (0.5 radii), and lose 1.1 to 1.4 where there is
-/// one fire (less than 0.05): from most points all of that is equally far, and a tree of thousands of cells is slow.
+/// A medium is one leaf if its light comes from within this distance of its centre (root mean square, in radii of the
+/// scene). Measured: cells gain 1.25 in a smoky hall with a row of twelve flames (0.5 radii), and lose 1.1 to 1.4 with
+/// one fire (less than 0.05). From most points all of that fire is equally far, and a tree of thousands of cells is
+/// slow.
 const NARROW: f64 = 0.125;
 
 /// What a tree is built of.
@@ -94,13 +95,13 @@ impl Extent<'_> {
         Moments::everywhere(power / (PI * radius.powi(2)), self.centre.as_dvec3(), REACH * radius)
     }
 
-    /// What `light` sends where, up to a factor: from as many `rays`.
+    /// Moments of what `light` emits, up to a factor, estimated from this many `rays`.
     fn moments(&self, light: &Light, number: u32, rays: usize) -> Moments {
         let ray = |sample: usize| {
             let mut stream = Stream::sobol(3, u64::from(number), sample as u64, Purpose::Pilot);
             let (value, position, direction) = self.ray(light, &mut stream);
             let power = f64::from(value.luminance());
-            // What is dark wherever one looks is somewhere all the same.
+            // An emitter without light in any ray still has a place.
             let power = if power.is_finite() { power.max(DARK) } else { DARK };
             Moments::ray(power, position.as_dvec3(), direction.as_dvec3())
         };

@@ -5,7 +5,7 @@ use crate::math::DVec3;
 use glam::Vec4;
 use std::ops::Range;
 
-/// Levels that are split where it is best; those below in the middle, so that paths fit in 64 bits.
+/// Levels that are split at the best place; those below are split in the middle, so that paths fit in 64 bits.
 const FREE_LEVELS: u32 = DEEPEST / 2;
 
 /// The least power of a child, as a part of all, and the least squared distance (m^2): their ratio is finite in f32.
@@ -34,8 +34,8 @@ struct Cluster {
 }
 
 impl LightTree {
-    /// Over the leaves that emit, each with its number below `count`: those `far` away, which are a cluster of their own
-    /// at the root, and those `near`. None without two leaves. Distances below `least` (m) make no difference.
+    /// A tree over emitting leaves, numbered below `count`: those `far` away, which are one cluster at the root, and
+    /// those `near`. None for fewer than two leaves. Distances below `least` (m) make no difference.
     pub(crate) fn new(
         far: Vec<(u32, Moments)>,
         near: Vec<(u32, Moments)>,
@@ -143,7 +143,8 @@ fn longest_axis(leaves: &[Leaf]) -> usize {
     variance.max_position()
 }
 
-/// How many of the sorted `leaves` come first where the spread of both parts is least; none if it is the same wherever.
+/// How many of the sorted `leaves` to split off so that the spread of both parts is least; none if all splits are
+/// equal.
 fn least_spread(leaves: &[Leaf]) -> Option<usize> {
     let mut after = vec![0.0; leaves.len()];
     let mut sum = Moments::default();

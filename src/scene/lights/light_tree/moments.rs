@@ -16,8 +16,8 @@ pub(crate) struct Moments {
     direction: DVec3,
 }
 
-/// The squared distance to a cluster's centre is taken to be more by this part of its variance. In the middle of a ball
-/// that is full of lamps the mean of 1/d^2 is 3/R^2, and the variance 3/5 R^2.
+/// This part of a cluster's variance is added to the squared distance to its centre. In the middle of a ball full of
+/// lamps, the mean of 1/d^2 is 3/R^2, and the variance 3/5 R^2.
 pub(super) const SOFTNESS: f64 = 0.55;
 
 /// The longest lobe: of light within some 15 degrees. What is narrower gets no narrower estimate.
@@ -30,8 +30,8 @@ impl Moments {
         Self { power, first: power * position, second, direction: power * direction }
     }
 
-    /// Light of irradiance `fluence` (W/m^2) wherever one is, as far as `reach` (m) around `centre`: that of a cluster
-    /// of such an extent that distance has no say.
+    /// Light of the same irradiance `fluence` (W/m^2) anywhere within `reach` (m) of `centre`: a cluster so large that
+    /// distance has no effect.
     pub(crate) fn everywhere(fluence: f64, centre: DVec3, reach: f64) -> Self {
         let power = 4.0 * std::f64::consts::PI * fluence * SOFTNESS * reach.powi(2);
         let second = power * (centre.length_squared() + reach.powi(2));

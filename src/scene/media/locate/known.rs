@@ -77,7 +77,7 @@ pub struct Known {
     pub infinity: Infinity,
 }
 
-/// A side of a boundary in one medium, from which an unblocked segment leads to another in a different one.
+/// An unblocked segment from a side of a boundary in one medium to one in another.
 #[derive(Clone, Copy, Debug)]
 pub struct Contradiction {
     /// The shape where the way begins; none for a point whose medium is stated.
@@ -99,7 +99,7 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Every pair that contradicts each other once, with how many rays prove it: most first. A single ray may have slipped
+    /// Every contradicting pair once, with the number of rays that prove it, most first. A single ray may have slipped
     /// through an edge.
     pub fn proven(&self) -> Vec<(&Contradiction, usize)> {
         let key = |c: &Contradiction| (c.from, c.medium, c.at.shape, c.at.medium);
@@ -129,8 +129,8 @@ impl Survey {
 }
 
 impl Known {
-    /// Looks around from all boundaries and the `points` whose medium is stated; where there are none of either, everything
-    /// lies in `otherwise`.
+    /// Looks around from all boundaries and the `points` whose medium is stated; with neither, everything lies in
+    /// `otherwise`.
     pub fn survey(
         geometry: &Geometry,
         surfaces: &[Surface],
