@@ -4,10 +4,7 @@ use super::{
     arguments::Arguments,
     console::{self, say},
 };
-use crate::{
-    error::Result,
-    film::output,
-};
+use crate::{error::Result, film::output};
 use clap::{Args, Command, CommandFactory};
 use clap_mangen::Man;
 use std::path::{Path, PathBuf};

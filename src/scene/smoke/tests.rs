@@ -370,7 +370,10 @@ fn velocities_of_blender_s_fluids_are_in_voxels_per_0_4_s() {
     assert_eq!(scale("blender_fluids.vdb", r#", "velocity_scale": 3"#), Some(3.0));
     assert_eq!(scale("houdini.vdb", ""), None);
     let told = exposed_of("blender_fluids.vdb", "", 0.0, 0.02).unwrap().1.smoke[0].to_string();
-    assert!(told.contains("+z up") && told.contains("carried along by \"velocity\" (1 is 0.3906 m/s)"), "{told}");
+    assert!(
+        told.contains("+z up") && told.contains("carried along by \"velocity\" (1 is 0.3906 m/s)"),
+        "{told}"
+    );
 }
 
 #[test]
