@@ -140,13 +140,18 @@ const COMMON: &[Parameter] = rows! {
 
 const HOMOGENEOUS: Table = table! {
     "A medium of constant extinction; albedo and phase function may vary.";
-    colour("sigma_t", "1/m", f64::INFINITY, Is(1.0), "Extinction coefficient: sigma_s + sigma_a.");
+    volume("sigma_t", "1/m", f64::INFINITY, Is(1.0), "Extinction coefficient, sigma_s + sigma_a: one value everywhere.");
     COMMON, EMISSION
 };
 
 fn homogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription> {
     let scale = scale(params)?;
-    let sigma_t = params.color("sigma_t")? * scale;
+    let Volume::Constant(sigma_t) = volume::parameter(params, "sigma_t", place)? else {
+        let at = params.given("sigma_t").map_or(params.location(), |given| &given.location);
+        let expected = "one value everywhere for \"sigma_t\" of a homogeneous medium";
+        return Err(Error::new(at, expected, "a volume that varies", "make the medium heterogeneous"));
+    };
+    let sigma_t: Spectrum = sigma_t.eval::<Spectrum>(Vec3::ZERO) * scale;
     if !sigma_t.is_finite() {
         return Err(params.complain("sigma_t", "a finite product with scale", format!("{sigma_t}")));
     }

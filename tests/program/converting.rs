@@ -309,7 +309,9 @@ fn whole_numbers_in_xml_are_of_the_kind_that_the_parameter_takes() {
 #[test]
 fn colours_of_media_above_1_are_volumes_in_xml() {
     let text = r#"{"type": "scene", "fog": {"type": "homogeneous", "sigma_t": {"type": "rgb", "value": [0.2, 1, 4]},
-        "albedo": {"type": "rgb", "value": [0.5, 1, 0.9]}}}"#;
+        "albedo": {"type": "rgb", "value": [0.5, 1, 0.9]}}, "sky": {"type": "constant"},
+        "ball": {"type": "sphere", "interior": {"type": "ref", "id": "fog"}, "bsdf": {"type": "null"}},
+        "camera": {"type": "perspective", "film": {"type": "hdrfilm", "width": 4, "height": 4}}}"#;
     let sandbox = Sandbox::with_files(&[("a.json", text)]);
     let (xml, _) = sandbox.convert("a.json", "a.xml", &[]);
     for line in [
@@ -319,6 +321,12 @@ fn colours_of_media_above_1_are_volumes_in_xml() {
     ] {
         assert!(xml.contains(line), "{xml}");
     }
+    let told = sandbox.run("info a.xml").ends(0);
+    assert!(told.out().contains("sigma_t 0.2 1 4 /m"), "{}", told.out());
+    let varies =
+        text.replace(r#"{"type": "rgb", "value": [0.2, 1, 4]}"#, r#"{"type": "polynomial", "x": "1, 1"}"#);
+    fs::write(sandbox.path("b.json"), varies).unwrap();
+    sandbox.run("info b.json").refuses(&["one value everywhere", "$.fog", "make the medium heterogeneous"]);
 }
 
 #[test]

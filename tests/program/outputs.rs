@@ -89,7 +89,10 @@ fn what_cannot_be_written_is_said_before_the_first_ray() {
         (format!("{flights} --report missing/f.json"), missing),
         (format!("{flights} --svg f --report f"), same),
         ("phase hg --samples 1000000000000 -o .".into(), folder),
-        ("phase isotropic --samples 1000000000000 -o missing".into(), missing),
+        (
+            "phase isotropic --samples 1000000000000 -o scene.json/drawn".into(),
+            &["scene.json/drawn", "a folder to write to"],
+        ),
         ("diff scene.exr scene.png --report missing/d.json".into(), missing),
         (
             "diff scene.exr scene.exr --map scene.png --report scene.exr".into(),

@@ -21,7 +21,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ("a gathering of long paths", "render scene.json --integrator gather --min-depth 2"),
     ("a study inside a file", "study scene.json -o scene.json/s"),
     ("strategies in place of a file", "strategies scene.json -o scene.json"),
-    ("a phase function drawn nowhere", "phase hg -o missing"),
+    ("a phase function drawn nowhere", "phase hg -o scene.json/drawn"),
 ];
 
 /// The messages of all of them.
