@@ -80,7 +80,6 @@ class Entry:
     shows: str
     after: str
     command: str
-    seconds: float
     mitsuba: bool
     why_not: str = ""
 
@@ -105,18 +104,23 @@ class Entry:
     @property
     def pictures(self) -> list[Path]:
         """Tyndall's, and Mitsuba's if there is one."""
-        end = "jpg" if self.is_denoised else "png"
+        end = "jpg" if self.is_large else "png"
         return [FOLDER / f"{name}.{end}" for name in (self.name, f"{self.name}.mitsuba")[: 1 + self.mitsuba]]
 
     @property
     def files(self) -> list[Path]:
         """Those, and the small ones beside them."""
-        return [path for picture in self.pictures for path in ((picture, small(picture)) if self.is_denoised else (picture,))]
+        return [path for picture in self.pictures for path in ((picture, small(picture)) if self.is_large else (picture,))]
 
     @property
     def is_denoised(self) -> bool:
         """By Open Image Denoise."""
         return DENOISE in self.options
+
+    @property
+    def is_large(self) -> bool:
+        """One still with a small one beside it."""
+        return self.is_denoised and not self.moves
 
     @property
     def moves(self) -> bool:
@@ -239,7 +243,7 @@ def animated(entry: Entry, threads: int, folder: Path) -> Measured:
     """A moving picture: its frames are measured by nobody."""
     seconds = rendered(entry.options, entry.scene, threads, folder / "frame.exr")["render_seconds"]
     fps = dict(zip(entry.options, entry.options[1:])).get("--fps", "24")
-    entry.pictures[0].write_bytes(animation([path.read_bytes() for path in sorted(folder.glob("frame.*.png"))], float(fps)))
+    entry.pictures[0].write_bytes(animation([path.read_bytes() for path in sorted(folder.glob(f"frame.*{'.denoised' if entry.is_denoised else '[0-9]'}.png"))], float(fps)))
     return Measured(seconds, threads)
 
 
@@ -302,7 +306,7 @@ def with_table(text: str) -> str:
 
 def row(entry: Entry, found: Measured | None) -> str:
     """A line of the table."""
-    ours = f"about {entry.seconds} s" if found is None else figures(found.seconds, found.relmse)
+    ours = "" if found is None else figures(found.seconds, found.relmse)
     theirs = f"none: {entry.why_not}"
     if entry.mitsuba:
         told = "" if found is None or found.mitsuba_seconds is None else f"<br>{found.mitsuba_by}: {figures(found.mitsuba_seconds, found.mitsuba_relmse)}"

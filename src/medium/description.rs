@@ -106,7 +106,9 @@ impl MediumDescription {
                     let remedy = "leave it out, or choose \"null_collision\"";
                     return Err(Error::new(&location, expected, "the tracker \"march\"", remedy));
                 }
-                self.medium.with(varying)
+                // Vacuum, however it was described: profiles leave it out.
+                let is_nothing = varying.bounds().0 == Spectrum::ZERO && self.emission.is_none();
+                if is_nothing { self.medium } else { self.medium.with(varying) }
             }
         };
         match self.emission {
