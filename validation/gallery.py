@@ -312,7 +312,7 @@ def row(entry: Entry, found: Measured | None) -> str:
         told = "" if found is None or found.mitsuba_seconds is None else f"<br>{found.mitsuba_by}: {figures(found.mitsuba_seconds, found.mitsuba_relmse)}"
         theirs = shown(entry.pictures[1]) + told
     after = f" ({entry.after})" if entry.after else ""
-    denoised = "<br>relMSE before denoising" if entry.is_denoised else ""
+    denoised = "<br>relMSE before denoising" if entry.is_large else ""
     return f"| {shown(entry.pictures[0])} | **{entry.title}**{after}: {entry.shows} | `{entry.command}` | {ours}{denoised} | {theirs} |"
 
 
