@@ -57,6 +57,14 @@ def test_colours_become_rgb(tmp_path: Path) -> None:
     assert wide["reflectance"] == {"type": "rgb", "value": [0.1, 0.2, 0.3]}
 
 
+def test_colours_are_known_by_either_name(tmp_path: Path) -> None:
+    """Once `llvm_ad_rgb` has been chosen, `scalar_rgb` calls its colours ScalarColor3f."""
+    channels = np.array([0.25, 0.5, 1])
+    for name in ("Color3f", "ScalarColor3f"):
+        colour: Any = channels.view(type(name, (np.ndarray,), {}))
+        assert spelled({"type": "diffuse", "reflectance": colour}, tmp_path)["reflectance"] == {"type": "rgb", "value": [0.25, 0.5, 1]}
+
+
 def test_arrays_become_the_files_that_mitsuba_reads_alike(tmp_path: Path, variant: str) -> None:
     voxels = np.random.default_rng(8).uniform(0, 1, (3, 4, 5, 1)).astype(np.float32)
     picture = np.random.default_rng(9).uniform(0, 2, (4, 6, 3)).astype(np.float32)

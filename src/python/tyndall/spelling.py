@@ -69,7 +69,7 @@ class Speller:
             return [self.value(inner, f"{place}[{i}]") for i, inner in enumerate(value)]
         if "Transform" in type(value).__name__:  # Dr.Jit's points claim to have a matrix too
             return matrix(numbers(value.matrix, place), place)
-        if type(value).__name__.startswith("Color"):
+        if "Color" in type(value).__name__:  # a ScalarColor3f too, whose name depends on the variant that was set first
             return {"type": "rgb", "value": numbers(value, place).tolist()}
         return plain(numbers(value, place), place)
 
