@@ -11,6 +11,7 @@ import pytest
 import tyndall
 from tyndall import load_dict
 from tyndall.failure import Failure
+from tyndall.scene import changed
 from validation.places import CROSSCHECK, SCENES
 
 STEPS: list[dict[str, Any]] = [{"type": "scale", "value": [2, 3, 4]}, {"type": "rotate", "axis": [0, 1, 0], "angle": 90}, {"type": "translate", "value": [5, 6, 7]}]
@@ -85,6 +86,39 @@ def test_files_go_too() -> None:
     assert tuple(mi.load_dict(theirs).sensors()[0].film().size()) == (8, 8)
     theirs = tyndall.to_mitsuba(CROSSCHECK / "grid_trilinear.json")
     assert mi.load_dict(theirs) is not None and tyndall.render(theirs, spp=1, size=(8, 8)).mean() > 0
+
+
+COLOUR = {"type": "rgb", "value": [0.07, 0.4, 1.5]}
+MEDIA: dict[str, tuple[dict[str, Any], list[float]]] = {
+    "a colour above 1": ({"type": "homogeneous", "sigma_t": COLOUR}, [0.07, 0.4, 1.5]),
+    "that of a varying medium": ({"type": "heterogeneous", "sigma_t": COLOUR, "scale": 2}, [0.14, 0.8, 3]),
+    "one channel for all": ({"type": "homogeneous", "sigma_t": {"type": "rgb", "value": 3}}, [3, 3, 3]),
+    "a whole number": ({"type": "homogeneous", "sigma_t": 9, "albedo": 1}, [9, 9, 9]),
+    "numpy's": ({"type": "homogeneous", "sigma_t": np.int64(9)}, [9, 9, 9]),
+    "a colour below 1": ({"type": "homogeneous", "sigma_t": {"type": "rgb", "value": [0.1, 0.2, 1]}}, [0.1, 0.2, 1]),
+}
+
+
+@pytest.mark.parametrize("what", MEDIA)
+def test_media_have_their_extinction(what: str) -> None:
+    medium, expected = MEDIA[what]
+    place = mi.MediumInteraction3f()
+    place.p = mi.Point3f(0.5, 0.5, 0.5)
+    loaded = mi.load_dict(changed(medium, load_dict.translated))
+    _, _, extinction = loaded.get_scattering_coefficients(place, True)
+    assert np.array(extinction) == pytest.approx(np.array(expected))
+
+
+def test_numbers_are_real_where_any_may_stand() -> None:
+    glass = load_dict.translated({"type": "dielectric", "int_ior": 2, "ext_ior": "air"})
+    assert str(mi.load_dict(glass)).count("eta = 1.99") == 1
+    film = load_dict.translated({"type": "hdrfilm", "width": 12, "height": 8, "sample_border": True})
+    assert (film["width"], film["sample_border"]) == (12, True) and type(film["width"]) is int
+
+
+def test_what_tyndall_has_not_stays_as_it_is() -> None:
+    theirs = {"type": "hair", "scale_tilt": 2, "pigmentation": {"type": "rgb", "value": [2, 1, 1]}}
+    assert changed(theirs, load_dict.translated) == theirs and type(load_dict.translated(theirs)["scale_tilt"]) is int
 
 
 def test_without_a_variant_it_is_said(monkeypatch: pytest.MonkeyPatch) -> None:

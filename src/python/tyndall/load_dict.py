@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from tyndall import schema
 from tyndall.failure import Failure
 from tyndall.scene import AnyScene, changed, integrator, load
 from tyndall.spelling import Speller, files
@@ -30,8 +31,9 @@ def from_mitsuba(tree: Mapping[str, Any], folder: str | Path | None = None) -> d
 
 def to_mitsuba(scene: AnyScene, parameters: Mapping[str, object] | None = None) -> dict[str, Any]:
     """The scene as `mitsuba.load_dict` takes it; a variant of Mitsuba must have been set. Lists of steps and matrices become
-    transforms, arrays bitmaps and grids, names of files whole; `bdpt`, `pt` and `lt`, and no integrator at all, become `volpath`,
-    which estimates the same image. Plugins that Mitsuba has not remain, and it will refuse them."""
+    transforms, arrays bitmaps and grids, names of files whole; whole numbers become floats where any number may stand, and colours
+    of media above 1 volumes; `bdpt`, `pt` and `lt`, and no integrator at all, become `volpath`, which estimates the same image.
+    Plugins that Mitsuba has not remain, and it will refuse them."""
     tree = load(scene, parameters)
     own = {} if integrator(tree) else {"integrator": {"type": "bdpt"}}
     return changed({**tree, **own}, translated)
@@ -43,8 +45,22 @@ def translated(o: dict[str, Any]) -> dict[str, Any]:
     if kind in OUR_INTEGRATORS:
         kept: dict[str, Any] = {key: o[key] for key in ("max_depth", "min_depth", "rr_depth", "hide_emitters") if key in o}
         return {"type": "volpath", "rr_depth": ROULETTE[o.get("max_depth", -1) < 0], **kept}
-    out = {key: parameter(key, value) for key, value in o.items() if key not in OURS.get(kind, ()) and key not in files(o)}
+    out = {key: typed(parameter(key, value), schema.row(kind, key)) for key, value in o.items() if key not in OURS.get(kind, ()) and key not in files(o)}
     return out | {HOLDERS[name]: holder(name, o[key]) for key, name in files(o).items()}
+
+
+def typed(value: Any, row: dict[str, Any]) -> Any:
+    """The value as Mitsuba takes it for the parameter that the row of the schema describes. It refuses a whole number where any may
+    stand, and takes a colour in place of a volume for a reflectance: above 1 it has to be a `constvolume`."""
+    if type(value) is int and schema.is_real(row):
+        return float(value)
+    return {"type": "constvolume", "value": value} if schema.is_volume(row) and exceeds_one(value) else value
+
+
+def exceeds_one(value: Any) -> bool:
+    """True for a colour with a channel above 1."""
+    channels = value.get("value") if isinstance(value, dict) and value.get("type") == "rgb" else None
+    return isinstance(channels, (int, float, list)) and bool(np.max(channels) > 1)
 
 
 HOLDERS = {"picture": "bitmap", "voxels": "grid"}
