@@ -21,9 +21,9 @@ def load(scene: Scene, variant: str = "scalar_rgb", size: tuple[int, int] | None
 
 def baked(scene: Scene) -> Scene:
     """The scene as Mitsuba knows all of it."""
-    from validation import bake  # it needs Mitsuba's package
+    from validation import bake, smoke  # they need Mitsuba's package
 
-    return Scene(bake.baked(scene.dictionary(), scene.folder), scene.name, {}, scene.folder)
+    return Scene(bake.baked(smoke.unfolded(scene), scene.folder), scene.name, {}, scene.folder)
 
 
 def render(scene: Scene, spp: int, seed: int = 0, variant: str = "scalar_rgb", size: tuple[int, int] | None = None) -> np.ndarray:
