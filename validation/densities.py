@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from tyndall import load_dict
+from tyndall.failure import Failure
 
 FAR_BELOW = 60.0
 """Scale heights below which `exponential` grows no further."""
@@ -27,6 +28,8 @@ def placed(o: dict, points: np.ndarray) -> np.ndarray:
     """A function with its place, its factor and its box."""
     if o["type"] == "constvolume":
         return factor(o.get("value", 1.0))
+    if o["type"] not in FUNCTIONS:
+        raise Failure(f"{o['type']} in a density: found no such function in numpy", "name a scene without it, or contenders without Mitsuba")
     own = to_own(o, points)
     shape = FUNCTIONS[o["type"]](o, own)
     bounds = [np.asarray(o.get(name, [limit] * 3)) for name, limit in (("min", -np.inf), ("max", np.inf))]

@@ -116,3 +116,9 @@ def test_a_function_gets_the_voxels_it_needs() -> None:
     assert needed <= x < 2 * needed and (y, z) == (bake.FEWEST, bake.FEWEST)
     jump = {"type": "polynomial", "x": "1, 1", "half_width": 0.5}
     assert np.prod(bake.voxels({**jump, "y": "0, 1"}, box, 0)) == bake.MOST
+
+
+def test_a_function_that_numpy_has_not_is_refused() -> None:
+    fog = {"type": "heterogeneous", "sigma_t": {"type": "product", "a": {"type": "exponential"}, "b": {"type": "noise"}}}
+    with pytest.raises(Failure, match="noise in a density(?s:.*)without Mitsuba"):
+        bake.baked({"type": "scene", "box": {"type": "cube", "interior": fog}}, Path())
