@@ -70,7 +70,7 @@ def run(options: argparse.Namespace) -> bool:
 
 def rows_of(scene: Path, strategies: dict[str, Any], options: argparse.Namespace) -> list[Row]:
     """Those of one scene."""
-    given: dict[str, Any] = {**strategies, "integrator": "bdpt", "spp": options.spp, "size": options.size, "threads": options.threads}
+    given: dict[str, Any] = {**strategies, "integrator": "bdpt", "film_samples": "own", "spp": options.spp, "size": options.size, "threads": options.threads}
     whole = render(scene, **given)
     truth = render(scene, **{**given, "spp": TRUTH * options.spp, "seed": 1})
     found = []

@@ -14,7 +14,7 @@ pub use table::table;
 use super::sheet::{self, Row};
 use crate::{
     error::Result,
-    film::{self, Channel, Film, format::Format, moments::Moments},
+    film::{self, Channel, Film, format::Format, moments::Moments, sharing::FilmSamples},
     math::{Spectrum, SpectrumExt},
     memory,
     render::{Settings, instrument::Instrument},
@@ -52,6 +52,8 @@ pub fn examine(
     plan: &Plan,
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<Findings> {
+    // Images of strategies show what is found through each pixel.
+    let settings = &Settings { film_samples: FilmSamples::Own, ..*settings };
     let options = settings.options;
     let cells = table_of(plan, &options);
     check(&setup.film, plan, &options)?;

@@ -1,13 +1,19 @@
 //! `tyndall denoise` and `render --denoise`: Open Image Denoise, by the Python package, whose extra `denoise` has it.
 
-use super::{console::say, display::Display, outputs::check_short, python::Script};
+use super::{
+    console::{complain, say},
+    display::Display,
+    outputs::check_short,
+    python::Script,
+};
 use crate::{
     analysis::picture,
     error::{Error, Result},
-    film::view,
+    film::{exr, view},
     inputs::{self, Reader},
 };
 use clap::Args;
+use serde_json::Value;
 use std::{
     ffi::OsStr,
     path::{Path, PathBuf},
@@ -34,9 +40,22 @@ pub(super) fn run(Denoise { image, display }: &Denoise) -> Result<()> {
     let mut display = *display;
     let exposure = display.choose(&picture::read(image)?.pixels).unwrap_or_default();
     check()?;
+    if shares_samples(image)? {
+        complain(&format!(
+            "warning: pixels of {} share samples, so that their noise is alike, and much of it will stay; render it with \
+             --denoise, or with --film-samples own",
+            image.display()
+        ));
+    }
     let written = denoise(image, display.of(&[]))?;
     say(&format!("{}{exposure}", written.display()));
     Ok(())
+}
+
+/// True if a render with shared samples made the image.
+fn shares_samples(image: &Path) -> Result<bool> {
+    let made = exr::made(image)?.and_then(|text| serde_json::from_str::<Value>(&text).ok());
+    Ok(made.is_some_and(|made| made["shares_samples"] == true))
 }
 
 /// An error unless images can be denoised: better known before hours of rendering than after.

@@ -9,7 +9,10 @@ use super::{
 };
 use crate::{
     error::{Error, Result},
-    film::layer::Content,
+    film::{
+        layer::{Content, Layer},
+        sharing::FilmSamples,
+    },
     learning::{
         pilot::{self, Choice, Decided, Report},
         training,
@@ -143,6 +146,17 @@ pub struct Estimator {
     #[arg(long, value_name = "NAME", value_parser = one_of(&Sampler::NAMES))]
     pub sampler: Option<Sampler>,
 
+    /// Which samples of camera subpaths a pixel takes [default: shared, but own with --denoise, --error, layers of
+    /// moments or variances, and the layers first_albedo and first_normal, which denoisers need]
+    ///
+    /// shared: all that its filter reaches, also those of the pixels around it; own: as many as the image has per pixel,
+    /// distributed by its filter (filter importance sampling). The expected image is the same. Shared samples leave a
+    /// third of the variance under the default filter; the noise of neighbouring pixels is alike, which denoisers do
+    /// not expect. With a box filter, with a film that is sampled beyond its border, and with --crop, samples are
+    /// always a pixel's own.
+    #[arg(long, value_name = "NAME", value_parser = one_of(&FilmSamples::NAMES))]
+    pub film_samples: Option<FilmSamples>,
+
     /// Continue every primary ray that crosses media twice: from a forced collision in the media and from the
     /// surface behind them [default: the scene's forced_interaction]
     ///
@@ -261,7 +275,7 @@ impl Estimator {
             Profile::Fitted => ProfileName::leanest(Needs::of(&setup.scene, options.hide_emitters)),
         };
         let (sampler, profile) = (self.sampler(setup), profile.weighing(options.heuristic));
-        Ok(Settings { options, sampler, budget, seed, profile })
+        Ok(Settings { options, sampler, film_samples: self.film_samples(setup), budget, seed, profile })
     }
 
     /// The same with a guide, whatever the scene says.
@@ -382,6 +396,12 @@ impl Estimator {
             return Err(Error::new(place, "the heuristic balance", found, remedy));
         }
         Ok(guide)
+    }
+
+    fn film_samples(&self, setup: &Setup) -> FilmSamples {
+        let needs_own = |layer: &Layer| layer.needs_squares() || layer.is_for_denoisers();
+        let has_such = setup.integrator.layers.iter().any(needs_own);
+        self.film_samples.unwrap_or(if has_such { FilmSamples::Own } else { FilmSamples::Shared })
     }
 
     fn sampler(&self, setup: &Setup) -> Sampler {

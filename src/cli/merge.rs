@@ -7,7 +7,7 @@ use super::{
     outputs::check_short,
     parsers::image_file,
     provenance::{self, made, must_equal},
-    render::{arguments::Render, precision::precision, target::Target},
+    render::{arguments::Render, precision::precision, target::Target, task},
 };
 use crate::{
     description::Object,
@@ -223,9 +223,11 @@ fn check_cover(parts: &[Part], windows: &[Window], whole: &Window) -> Result<()>
 
 /// How the command `render` would make the image of `setup` now, and the settings for that, without samples to add.
 fn made_again(render: &Render, setup: &Setup) -> Result<(Value, Settings)> {
-    let (settings, chosen) = render.estimator.chosen(setup, render.seed, Budget::samples(0))?;
+    let estimator = task::estimator(render, setup)?;
+    let (settings, chosen) = estimator.chosen(setup, render.seed, Budget::samples(0))?;
     let precision = precision(render, setup, &settings)?;
-    let now = made(provenance::settings(&render.scene, setup, &settings, chosen, precision)?);
+    let recorded = provenance::settings(&render.scene, setup, &settings, chosen, precision)?;
+    let now = made(recorded, provenance::shares_samples(setup, &settings));
     Ok((now, Settings { seed: render.seed_of_part(), ..settings }))
 }
 

@@ -23,6 +23,9 @@ use std::{
 };
 
 /// Write the paths of one pixel's samples.
+///
+/// A sample is what is found through the pixel. Where pixels share samples (see --film-samples), the image adds up those of
+/// the pixels around it too, as its filter weighs them.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub struct Arguments {
     /// Which scene.

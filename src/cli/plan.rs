@@ -165,7 +165,7 @@ impl Plan {
 
     /// The same facts for scripts.
     pub(super) fn json(&self) -> Value {
-        let Settings { options, sampler: points, budget, seed, profile } = self.settings;
+        let Settings { options, sampler: points, film_samples, budget, seed, profile } = self.settings;
         let Options { effort, connections, .. } = options;
         let unreached = self.unreached.iter();
         let mut all = json!({
@@ -183,6 +183,7 @@ impl Plan {
             "guided": effort.is_guided(),
             "time_of_all_strategies": self.chosen.map(|choice| choice.gain),
             "sampler": points.name(),
+            "film_samples": film_samples.name(),
             "free_flights": self.flights.iter().map(|method| method.name()).collect::<Vec<_>>(),
             "width": self.size[0],
             "height": self.size[1],

@@ -129,6 +129,7 @@ pub(super) fn percent(relative: f64) -> String {
 mod tests {
     use super::*;
     use crate::{
+        film::sharing::FilmSamples,
         passes::budget::Budget,
         sampling::Sampler,
         transport::{Options, profiles::ProfileName},
@@ -139,8 +140,9 @@ mod tests {
     fn the_nearest_limit_counts() {
         let budget = Budget { time: Some(Duration::from_secs(10)), ..Budget::samples(4) };
         let profile = ProfileName::Everything;
-        let settings =
-            Settings { options: Options::default(), sampler: Sampler::Independent, budget, seed: 0, profile };
+        let (options, sampler) = (Options::default(), Sampler::Independent);
+        let film_samples = FilmSamples::default();
+        let settings = Settings { options, sampler, film_samples, budget, seed: 0, profile };
         let bar = Bar::new(settings, None, 100, None);
         let at = |samples, seconds| {
             let elapsed = Duration::from_secs(seconds);

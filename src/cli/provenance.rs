@@ -4,6 +4,7 @@ use super::scene::Scene;
 use crate::{
     analysis::study::question::differ,
     error::{Error, Result},
+    film::sharing::FilmSamples,
     film::view::Display,
     format,
     learning::pilot::Choice,
@@ -32,7 +33,7 @@ pub(super) fn settings(
     let files: Map<String, Value> = sources.fingerprints()?.into_iter().enumerate().map(names).collect();
     let definitions: Map<String, Value> =
         scene.definitions.iter().map(|(name, value)| (name.clone(), value.as_str().into())).collect();
-    let Settings { options, sampler, seed, profile, .. } = settings;
+    let Settings { options, sampler, film_samples, seed, profile, .. } = settings;
     let trackers = setup.scene.media.iter().filter_map(|medium| medium.heterogeneous());
     let trackers: Vec<String> =
         trackers.map(|medium| medium.forced().unwrap_or(medium.requested()).name().to_owned()).collect();
@@ -61,18 +62,21 @@ pub(super) fn settings(
     if let Some(sensor) = &scene.sensor {
         all["sensor"] = sensor.as_str().into();
     }
-    extend(&mut all, setup, options);
+    extend(&mut all, setup, options, *film_samples);
     Ok(all)
 }
 
 /// Adds what else decides, only where there is something: earlier sums, which know of none of it, can go on.
-fn extend(settings: &mut Value, setup: &Setup, options: &Options) {
+fn extend(settings: &mut Value, setup: &Setup, options: &Options, film_samples: FilmSamples) {
     let overridden = setup.overrides.json();
     if !overridden.is_empty() {
         settings["overridden"] = Value::Object(overridden);
     }
     if options.connections == Connections::All {
         settings["connections"] = "all".into();
+    }
+    if setup.film.can_share() && film_samples == FilmSamples::Own {
+        settings["film_samples"] = film_samples.name().into();
     }
     if options.algorithm.ends_in_first_pass() {
         settings["preview"] = options.algorithm.name().into();
@@ -114,11 +118,17 @@ pub(super) fn program() -> String {
     format!("tyndall {}", env!("CARGO_PKG_VERSION"))
 }
 
-/// `settings` with the command that is running: enough to make the image again.
-pub(super) fn made(settings: Value) -> Value {
+/// True if pixels of a render share samples.
+pub(super) fn shares_samples(setup: &Setup, settings: &Settings) -> bool {
+    setup.film.can_share() && settings.film_samples == FilmSamples::Shared
+}
+
+/// `settings` with the command that is running: enough to make the image again; and whether pixels share samples, which
+/// denoisers ask.
+pub(super) fn made(settings: Value, shares_samples: bool) -> Value {
     let command: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
     let folder = std::env::current_dir().map(|folder| folder.display().to_string()).unwrap_or_default();
-    json!({ "settings": settings, "command": command, "folder": folder })
+    json!({ "settings": settings, "command": command, "folder": folder, "shares_samples": shares_samples })
 }
 
 /// The same with what became of it, as files hold it: ASCII.

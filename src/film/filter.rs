@@ -1,5 +1,6 @@
-//! Reconstruction filters. Camera subpaths use filter importance sampling, so every sample counts fully for one pixel.
-//! Light subpaths are splatted onto all pixels that the filter reaches.
+//! Reconstruction filters. Camera subpaths either use filter importance sampling (Ernst et al. 2006), so that every sample
+//! counts fully for one pixel, or are shared by all pixels that the filter reaches, see [`super::sharing`]. Light
+//! subpaths are splatted onto all these pixels.
 //!
 //! Where a filter has negative lobes, camera subpaths are distributed by its magnitude. They carry its sign, times the
 //! integral of |f| over that of f.
@@ -245,15 +246,15 @@ impl Plain {
 /// A filter along one axis of a film: where samples end it is cut off, and normalised again.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    filter: Filter,
+    pub(super) filter: Filter,
     sampler: Sampler,
-    size: u32,
+    pub(super) size: u32,
     /// Positions from here...
     low: f32,
     /// ...to here are sampled.
     high: f32,
     /// 1 / integral over those positions, per pixel.
-    scales: Vec<f32>,
+    pub(super) scales: Vec<f32>,
     /// Integral of the magnitude over that of the filter, per pixel; empty where they are the same.
     cancelled: Vec<f32>,
 }

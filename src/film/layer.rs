@@ -219,6 +219,11 @@ impl Layer {
         matches!(self.content, Content::Part(_))
     }
 
+    /// True if denoisers need it.
+    pub fn is_for_denoisers(&self) -> bool {
+        matches!(self.content, Content::Surface(Quantity::FirstAlbedo | Quantity::FirstNormal))
+    }
+
     /// True if it needs the squares of passes.
     pub fn needs_squares(&self) -> bool {
         matches!(self.content, Content::SecondMoment | Content::Variance)

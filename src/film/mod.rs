@@ -11,6 +11,7 @@ pub mod noise;
 pub mod output;
 pub mod png;
 pub mod raster;
+pub mod sharing;
 pub mod view;
 
 use crate::{
@@ -21,6 +22,7 @@ use crate::{
 };
 use filter::{Axis, Filter};
 use format::Format;
+use sharing::{Place, Places, Sharing};
 
 /// One value per pixel, and how it is called in a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,6 +76,8 @@ pub struct Film {
     pub format: Format,
     across: Axis,
     down: Axis,
+    /// How places within pixels are distributed where pixels share samples.
+    places: Option<Places>,
 }
 
 impl Film {
@@ -87,7 +91,11 @@ impl Film {
     fn bordered(window: Window, filter: Filter, border: [[u32; 2]; 2], format: Format) -> Self {
         let [width, height] = window.size;
         let (across, down) = (Axis::new(filter, width, border[0]), Axis::new(filter, height, border[1]));
-        Self { width, height, window, filter, border, format, across, down }
+        // Those of a box filter keep their own samples anyway; where a film is sampled beyond its border, there are no
+        // samples beyond to share.
+        let is_shared = filter != Filter::Box && border == [[0; 2]; 2];
+        let places = is_shared.then(|| Places::new(&filter));
+        Self { width, height, window, filter, border, format, across, down, places }
     }
 
     /// The part of `size` pixels from `corner` on, both within it. Its pixels show what they show in the whole: filters
@@ -109,12 +117,30 @@ impl Film {
         let (size, offset) = (least(size), offset.map(|side| side / divisor));
         let whole = least(full_size);
         let full_size = [0, 1].map(|axis| whole[axis].max(offset[axis] + size[axis]));
-        Self::new(
-            Window { full_size, offset, size },
-            self.filter,
-            false,
-            Format { alpha: false, ..self.format },
-        )
+        let format = Format { alpha: false, ..self.format };
+        Self::new(Window { full_size, offset, size }, self.filter, false, format)
+    }
+
+    /// True if pixels can share samples.
+    pub fn can_share(&self) -> bool {
+        self.places.is_some()
+    }
+
+    /// Where the samples of a pass lie within their pixels, drawn from `stream`; none if its pixels cannot share them.
+    #[inline]
+    pub fn place(&self, stream: &mut Stream) -> Option<Place> {
+        self.places.as_ref().map(|places| sharing::place(places, stream))
+    }
+
+    /// How pixels share the samples of a pass that lie at `place`.
+    pub fn sharing(&self, place: Place) -> Sharing<'_> {
+        Sharing::new([&self.across, &self.down], place)
+    }
+
+    /// The part that sharing leaves of the variance of camera samples: 1 if pixels cannot share them.
+    pub fn variance_left(&self) -> f64 {
+        let of = |places| [&self.across, &self.down].map(|axis| sharing::variance_left(axis, places));
+        self.places.as_ref().map_or(1.0, |places| of(places).iter().product())
     }
 
     /// Number of pixels.
@@ -149,6 +175,13 @@ impl Film {
         let (x, across) = self.across.sample(x, stream);
         let (y, down) = self.down.sample(y, stream);
         (vec2(x, y), across * down)
+    }
+
+    /// The film position at `place` within `pixel` (row-major index).
+    #[inline]
+    pub fn position(&self, pixel: usize, place: Place) -> Vec2 {
+        let (x, y) = (pixel % self.width as usize, pixel / self.width as usize);
+        vec2(x as f32 + 0.5, y as f32 + 0.5) + place.offset()
     }
 
     /// True if a film position counts for some pixel.

@@ -7,7 +7,6 @@
 //! mean counts in the same way against what is around it, and so on to the whole image: where nine pixels of ten have
 //! found no light yet, eight neighbours say nothing. A small lamp in view is no such sample, but only a look can tell:
 //! pixels that carry much of the error are looked at.
-//! much of the error are looked at.
 
 use crate::math::relative::Relative;
 use rayon::prelude::*;

@@ -13,7 +13,7 @@
 use super::{radiance, trial::Trial};
 use crate::{
     bsdf::Transport,
-    film::Film,
+    film::{Film, sharing::FilmSamples},
     first_pass,
     guide::{
         Guide, Learnt, Lesson,
@@ -213,6 +213,7 @@ pub fn of_learning(options: Options) -> Settings {
         options,
         seed: SEED,
         sampler: Sampler::Independent,
+        film_samples: FilmSamples::Own,
         budget: Budget::ENDLESS,
         profile: ProfileName::Everything,
     }

@@ -1,7 +1,7 @@
 //! A block: a fixed set of pixels scattered over the image, rendered together with a light cache of their own.
 
 use crate::{
-    film::Film,
+    film::{Film, sharing::Place},
     math::Vec2,
     sampling::{Sampler, Stream, stream::Purpose},
     scene::Scene,
@@ -119,18 +119,31 @@ impl Blocks {
         Some((block, place - self.places(block).start))
     }
 
-    /// Where the camera subpath of `pixel` in `pass` starts.
+    /// Where the camera subpaths of `pass` start within their pixels, if these can share them.
+    pub fn place(&self, film: &Film, seed: u64, pass: usize) -> Option<Place> {
+        // A number that no pixel has.
+        let (mut stream, _) = self.camera_stream(seed, pass, self.pixels);
+        film.place(&mut stream)
+    }
+
+    /// Where the camera subpath of `pixel` in `pass` starts: at `place`, if pixels share their samples.
     #[inline]
     pub fn camera_start(
         &self,
-        scene: &Scene,
-        film: &Film,
+        (scene, film): (&Scene, &Film),
         seed: u64,
-        pass: usize,
-        pixel: usize,
+        [pass, pixel]: [usize; 2],
+        place: Option<Place>,
     ) -> CameraStart {
         let (mut stream, hero) = self.camera_stream(seed, pass, pixel);
-        let (position, weight) = film.sample(pixel, &mut stream);
+        let (position, weight) = match place {
+            None => film.sample(pixel, &mut stream),
+            Some(place) => {
+                // The place has these coordinates of the pass's point; all later ones are spread evenly beside them.
+                stream.square();
+                (film.position(pixel, place), 1.0)
+            }
+        };
         let aperture = scene.sensor.sample_aperture(&mut stream);
         CameraStart { stream, hero, position, aperture, weight, walk: self.walk_of(pixel) }
     }

@@ -10,7 +10,7 @@ use super::{
     ready::Ready,
 };
 use crate::{
-    film::Film,
+    film::{Film, sharing::Sharing},
     guide::Learnt,
     math::Spectrum,
     sampling::Stream,
@@ -41,6 +41,10 @@ pub trait Compiled: Send + Sync {
     fn starts(&self) -> Option<&Starts>;
     /// Where the camera subpath of `pixel` in `pass` starts.
     fn camera_start(&self, pass: usize, pixel: usize) -> CameraStart;
+    /// The same as if pixels did not share their samples.
+    fn own_start(&self, pass: usize, pixel: usize) -> CameraStart;
+    /// How pixels share the camera samples of `pass`; none if they have their own.
+    fn sharing(&self, pass: usize) -> Option<Sharing<'_>>;
     /// One sample of every pixel of `block` that `wants` one.
     fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome;
     /// One sample of each of `pixels`, connected to the light subpaths of `block`, which need not be their own; where

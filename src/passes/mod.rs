@@ -13,6 +13,7 @@ mod ready;
 pub mod splats;
 
 use crate::{
+    film::sharing::FilmSamples,
     sampling::Sampler,
     transport::{Options, profiles::ProfileName},
 };
@@ -25,6 +26,8 @@ pub struct Settings {
     pub options: Options,
     /// Where the random numbers of walks come from.
     pub sampler: Sampler,
+    /// Which samples of camera subpaths pixels take.
+    pub film_samples: FilmSamples,
     /// When to stop.
     pub budget: Budget,
     /// The same seed gives the same image, bit for bit.

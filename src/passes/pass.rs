@@ -1,7 +1,7 @@
 //! A pass over the image, one sample of every pixel, block by block.
 
 use super::{blocks::Blocks, faults::Fault, fill};
-use crate::math::Spectrum;
+use crate::{film::sharing::Sharing, math::Spectrum};
 
 /// What a block adds to its pass.
 #[derive(Default)]
@@ -48,8 +48,12 @@ impl Pass {
         outcome.light.iter().for_each(|(pixel, value)| self.light[*pixel as usize] += *value);
     }
 
-    /// Shows the pass, all of whose blocks have been added, to `see`, and starts the next one.
-    pub fn finish(&mut self, see: impl FnOnce(&[Spectrum])) {
+    /// Shows the pass, all of whose blocks have been added, to `see`, and starts the next one. Camera samples are shared
+    /// by pixels as `sharing` says.
+    pub fn finish(&mut self, sharing: Option<&Sharing<'_>>, see: impl FnOnce(&[Spectrum])) {
+        if let Some(sharing) = sharing {
+            sharing.share(&mut self.camera);
+        }
         self.camera.iter_mut().zip(&self.light).for_each(|(camera, light)| *camera += *light);
         see(&self.camera);
         self.clear();

@@ -10,7 +10,10 @@ use super::{
     splats::Splats,
 };
 use crate::{
-    film::Film,
+    film::{
+        Film,
+        sharing::{FilmSamples, Place, Sharing},
+    },
     guide::Learnt,
     math::{Channels, Spectrum, Vec2},
     sampling::Stream,
@@ -29,6 +32,7 @@ pub(super) struct Ready<'a, P: Profile> {
     blocks: Blocks,
     scene: &'a Scene,
     film: &'a Film,
+    film_samples: FilmSamples,
     seed: u64,
 }
 
@@ -56,9 +60,20 @@ impl<'a, P: Profile> Ready<'a, P> {
             Connections::All => Blocks::new(pixels, heroes, sampler, 1.0).paired(),
         };
         let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
-        let Settings { options, seed, .. } = *settings;
+        let Settings { options, seed, film_samples, .. } = *settings;
         let estimator = Estimator::<P>::new(scene, options, learnt, seed, per_pass, per_block);
-        Box::new(Self { estimator, blocks, scene, film, seed })
+        Box::new(Self { estimator, blocks, scene, film, film_samples, seed })
+    }
+
+    /// Where the camera subpaths of `pass` start within their pixels, if these share them.
+    fn place(&self, pass: usize) -> Option<Place> {
+        let place = || self.blocks.place(self.film, self.seed, pass);
+        if self.film_samples == FilmSamples::Shared { place() } else { None }
+    }
+
+    #[inline]
+    fn start(&self, pass: usize, pixel: usize, place: Option<Place>) -> CameraStart {
+        self.blocks.camera_start((self.scene, self.film), self.seed, [pass, pixel], place)
     }
 
     /// Samples of pixels, connected to light subpaths of these numbers.
@@ -141,14 +156,21 @@ impl<P: Profile> Compiled for Ready<'_, P> {
     }
     #[inline]
     fn camera_start(&self, pass: usize, pixel: usize) -> CameraStart {
-        self.blocks.camera_start(self.scene, self.film, self.seed, pass, pixel)
+        self.start(pass, pixel, self.place(pass))
+    }
+    fn own_start(&self, pass: usize, pixel: usize) -> CameraStart {
+        self.start(pass, pixel, None)
+    }
+    fn sharing(&self, pass: usize) -> Option<Sharing<'_>> {
+        self.place(pass).map(|place| self.film.sharing(place))
     }
     fn render(&self, pass: usize, block: usize, wants: &dyn Fn(usize) -> bool) -> Outcome {
         guarded(pass, |failed, at| {
             let is_wanted = |pixel: &usize| wants(*pixel) && !failed.contains(&(*pixel as u32));
+            let place = self.place(pass);
             let mut sights = self.blocks.pixels(block).filter(is_wanted).map(|pixel| {
                 at.set(Some(pixel as u32));
-                Sight { pixel, block, start: self.camera_start(pass, pixel) }
+                Sight { pixel, block, start: self.start(pass, pixel, place) }
             });
             self.sample(pass, &mut self.light_paths(block), &mut sights)
         })
@@ -171,8 +193,9 @@ impl<P: Profile> Compiled for Ready<'_, P> {
             self.trace_light(pass, walk, &mut cache, &mut observer.light(walk));
         }
         observer.lit();
+        let place = self.place(pass);
         for pixel in self.blocks.pixels(block).filter(|pixel| wants(*pixel)) {
-            let start = self.camera_start(pass, pixel);
+            let start = self.start(pass, pixel, place);
             let camera = observer.camera(pixel, &start);
             start.trace(&self.estimator, &cache, camera);
             observer.ended(pixel);

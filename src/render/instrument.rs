@@ -212,10 +212,12 @@ impl<'a> Instrument<'a> {
     pub fn passes(&self, passes: Range<usize>, see: &mut dyn FnMut(&[Spectrum])) -> Duration {
         let mut image = Pass::new(self.film.len());
         let work = |pass, block| self.at(pass).render(pass, block, &|_| true);
+        let mut pass = passes.start;
         self.in_order(passes, work, |outcome, ends_pass| {
             image.add(&outcome);
             if ends_pass {
-                image.finish(&mut *see);
+                image.finish(self.at(pass).sharing(pass).as_ref(), &mut *see);
+                pass += 1;
             }
         })
     }

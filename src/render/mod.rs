@@ -23,7 +23,7 @@ pub use subject::{Stage, Subject};
 
 use crate::{
     error::Result,
-    film::{Channel, Film, accumulator::Accumulator, layer::Layer},
+    film::{Channel, Film, accumulator::Accumulator, layer::Layer, sharing::FilmSamples},
     passes::budget::Budget,
     settings::integrator::FogSettings,
     transport::{Algorithm, Heuristic, Options, Strategies},
@@ -105,6 +105,8 @@ pub fn go_on<'a>(
         }
         AnySums::Adaptive(halves) => {
             let (stopwatch, started) = (Stopwatch::start(), Instant::now());
+            // Pixels need different numbers of samples.
+            let settings = &Settings { film_samples: FilmSamples::Own, ..*settings };
             let stage = &Stage::new(subject.into(), film, settings, layers, Some(halves.precision));
             let watch = &mut |progress, halves: &Halves| watch(progress, halves);
             Adaptive { stage, stopwatch: &stopwatch, watch }.run(halves)?;
@@ -216,7 +218,9 @@ fn accumulate(
             };
             let done = instrument.work_in_turn(tasks.clone(), pass, is_over, render, |first, outcomes| {
                 for (task, outcome) in (first..).zip(outcomes) {
-                    sums.add(queue.sample(task), outcome, queue.per_pass);
+                    let sample = queue.sample(task);
+                    let sharing = instrument.compiled.sharing(sample as usize);
+                    sums.add(sample, outcome, queue.per_pass, sharing.as_ref());
                 }
                 if noted.elapsed() > NOISE_EVERY {
                     sums.note_noise(&|pixel| seen.of(pixel));

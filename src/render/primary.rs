@@ -1,5 +1,6 @@
 //! What primary rays see: alpha, and the layers that describe the first surface. A cheap pass of its own,
-//! only where something requests it, through the same film positions as the camera subpaths.
+//! only where something requests it. Pixels take no samples of others, whichever those of the image take: what is even
+//! stays even up to the border, and alpha within [0, 1].
 
 use super::{instrument::Instrument, subject::Stage};
 use crate::{
@@ -96,7 +97,7 @@ impl Pass {
         let environment = instrument.scene.lights.environment.is_some();
         let width = sums.len() / instrument.film.len();
         sums.par_chunks_mut(width).enumerate().for_each(|(pixel, sums)| {
-            let mut start = instrument.compiled.camera_start(pass as usize, pixel);
+            let mut start = instrument.compiled.own_start(pass as usize, pixel);
             let view = View::new(instrument, environment, &start, passes);
             let alpha = self.alpha.then(|| Vec3::splat(view.alpha(&mut start.stream)));
             let first = self.interacts().then(|| view.first_interaction(&mut start.stream)).flatten();

@@ -42,6 +42,7 @@ impl Instrument<'_> {
 mod tests {
     use super::*;
     use crate::{
+        film::sharing::FilmSamples,
         format,
         passes::{Settings, budget::Budget},
         sampling::Sampler,
@@ -63,7 +64,8 @@ mod tests {
         let options = Options { strategies: Strategies::BDPT, ..setup.integrator.options };
         let profile = ProfileName::leanest(Needs::of(&setup.scene, false));
         let (sampler, budget) = (Sampler::Independent, Budget::ENDLESS);
-        let settings = Settings { options, sampler, budget, seed: 0, profile };
+        let settings =
+            Settings { options, sampler, film_samples: FilmSamples::default(), budget, seed: 0, profile };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| see(&Instrument::new(&setup.scene, &setup.film, &settings)))
     }

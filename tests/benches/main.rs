@@ -6,6 +6,7 @@ mod smoke;
 
 use std::path::Path;
 use tyndall::{
+    film::sharing::FilmSamples,
     format,
     passes::{Settings, budget::Budget},
     sampling::Sampler,
@@ -29,5 +30,12 @@ fn read(path: &Path, overrides: Overrides) -> Setup {
 fn settings(Setup { scene, integrator, .. }: &Setup) -> Settings {
     let options = integrator.options;
     let profile = ProfileName::leanest(Needs::of(scene, options.hide_emitters));
-    Settings { options, sampler: Sampler::Independent, budget: Budget::ENDLESS, seed: 0, profile }
+    Settings {
+        options,
+        sampler: Sampler::Independent,
+        film_samples: FilmSamples::default(),
+        budget: Budget::ENDLESS,
+        seed: 0,
+        profile,
+    }
 }

@@ -9,6 +9,7 @@ pub(crate) mod studies;
 use serde_json::Value;
 use tempfile::TempDir;
 use tyndall::{
+    film::sharing::FilmSamples,
     format,
     math::Spectrum,
     passes::{Settings, budget::Budget, faults::Faults},
@@ -25,6 +26,8 @@ pub(crate) struct Stage {
     pub setup: Setup,
     /// The code that renders it.
     pub profile: ProfileName,
+    /// Which samples pixels take.
+    pub film_samples: FilmSamples,
 }
 
 impl Stage {
@@ -64,7 +67,7 @@ impl Stage {
         let root = format::read(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
         let setup = build::build(&root, overrides).unwrap_or_else(|error| panic!("{error}"));
         let profile = ProfileName::leanest(Needs::of(&setup.scene, setup.integrator.options.hide_emitters));
-        Self { setup, profile }
+        Self { setup, profile, film_samples: FilmSamples::default() }
     }
 
     /// The same with the code that has everything.
@@ -93,7 +96,7 @@ impl Stage {
         // Tests of means want batches whose errors are what their own variance says.
         let sampler = self.setup.sampler.unwrap_or(Sampler::Independent);
         let budget = Budget::samples(samples_per_pixel);
-        Settings { options, sampler, budget, seed, profile: self.profile }
+        Settings { options, sampler, film_samples: self.film_samples, budget, seed, profile: self.profile }
     }
 
     /// Renders one image per seed.

@@ -12,6 +12,7 @@ use tyndall::{
         outliers::{self, Outliers, Plan},
         sample::PixelSample,
     },
+    film::sharing::FilmSamples,
     math::{Spectrum, SpectrumExt},
     render::instrument::Instrument,
     transport::Strategies,
@@ -100,6 +101,26 @@ fn less(passes: &[f64], part: &Part) -> f64 {
     deviations(passes) - deviations(&without)
 }
 
+/// The samples of all pixels, shared, are the pass that a render adds.
+#[test]
+fn shared_samples_make_the_pass() {
+    for filter in ["gaussian", "tent", "lanczos"] {
+        let stage = Stage::new(&room_with(Some(medium(1.0, 0.8, 0.3)), filter));
+        let rendered = stage.render(Strategies::BDPT, 1, 3);
+        let passes = samples(&stage, Strategies::BDPT);
+        let light = |sample: &PixelSample| sample.splats.iter().map(|splat| splat.value()).sum::<Spectrum>();
+        let mut camera: Vec<Spectrum> =
+            passes.iter().map(|samples| samples[0].value - light(&samples[0])).collect();
+        let settings = stage.settings(Strategies::BDPT, 1, 3);
+        let instrument = Instrument::new(&stage.setup.scene, &stage.setup.film, &settings);
+        instrument.compiled.sharing(0).unwrap().share(&mut camera);
+        for (pixel, (camera, rendered)) in camera.iter().zip(&rendered).enumerate() {
+            let value = *camera + light(&passes[pixel][0]);
+            assert!((value - *rendered).abs().max_element() < 1e-4, "{filter} {pixel}: {value} {rendered}");
+        }
+    }
+}
+
 #[test]
 fn what_is_found_is_what_all_samples_hold() {
     let fog = medium(1.0, 0.8, 0.3);
@@ -110,7 +131,7 @@ fn what_is_found_is_what_all_samples_hold() {
         ("fire", room_with(Some(with(fog, &[("radiance", json!(1))])), "box")),
         ("chromatic", room_with(Some(chromatic), "box")),
     ] {
-        let stage = Stage::new(&scene);
+        let stage = Stage { film_samples: FilmSamples::Own, ..Stage::new(&scene) };
         for set in [Strategies::BDPT, Strategies::LT, strategies("hit+next-event+join")] {
             let what = format!("{name}, {}", common::name_of(set));
             let (found, samples) = (search(&stage, set, 1000), samples(&stage, set));

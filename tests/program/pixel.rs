@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use tyndall::{
     analysis::pixel::sample::{Partner, PixelSample},
+    film::sharing::FilmSamples,
     math::Spectrum,
     render::instrument::Instrument,
     scene::lights::EmissionSample,
@@ -109,7 +110,7 @@ fn assert_consistent(what: &str, sample: &PixelSample) {
 fn a_sample_made_again_is_what_its_pass_adds() {
     let pixels = [0, 17, 20 * SIZE as usize + 13, 35 * SIZE as usize + 39, (SIZE * SIZE - 1) as usize];
     for (name, scene) in scenes().into_iter().chain(forced()).chain(paired()) {
-        let stage = Stage::new(&scene);
+        let stage = Stage { film_samples: FilmSamples::Own, ..Stage::new(&scene) };
         let (mut lit, mut joined, mut splats) = (0, 0, 0);
         for set in [Strategies::BDPT, Strategies::PT, Strategies::LT, strategies("hit+join")] {
             let instrument =
@@ -192,6 +193,7 @@ fn the_program_tells_what_a_render_holds() {
     let chromatic = medium(rgb(0.3, 1.0, 2.0), 0.8, 0.3);
     let sandbox = Sandbox::with_scene(&foggy_room(Some(chromatic), "gaussian"));
     for more in ["--seed 5", "--seed 6 --strategies hit,join,lens --max-depth 4", "--integrator pt"] {
+        let more = &format!("{more} --film-samples own");
         let rendered = sandbox.rendered(&format!("--spp 1 {more}"), 22, 17);
         let reported = sandbox.pixel(&format!("22 17 {more}"));
         assert_eq!(floats(&reported["samples"][0]["value"]), rendered, "{more}");

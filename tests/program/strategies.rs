@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use tyndall::{
     analysis::strategies::images::{StrategyCell, StrategyImages, StrategyTable},
+    film::sharing::FilmSamples,
     math::Spectrum,
     render::instrument::Instrument,
     transport::{Strategies, strategy::StrategyKind},
@@ -94,7 +95,7 @@ fn assert_same(what: &str, image: &[Spectrum], expected: &[Spectrum]) {
 #[test]
 fn the_weighted_parts_make_the_image() {
     for (name, scene) in scenes() {
-        let stage = Stage::new(&scene);
+        let stage = Stage { film_samples: FilmSamples::Own, ..Stage::new(&scene) };
         for set in [Strategies::BDPT, Strategies::PT, Strategies::LT, common::strategies("hit+join")] {
             let name = format!("{name}, {}", common::name_of(set));
             let image = stage.render(set, 4, 7);

@@ -8,6 +8,7 @@ use crate::common::{
 use serde_json::{Value, json};
 use std::time::Duration;
 use tyndall::{
+    film::sharing::FilmSamples,
     math::Spectrum,
     passes::{Settings, budget::Budget},
     render::{self, Image, Precision},
@@ -22,7 +23,14 @@ fn to_precision(stage: &Stage, strategies: Strategies, error: f64, most: Option<
     let options = Options { strategies, max_depth: integrator.options.max_depth, ..Options::default() };
     let budget =
         Budget { samples_per_pixel: most, time: most.map(|_| Duration::from_secs(600)), ..Budget::ENDLESS };
-    let settings = Settings { options, sampler: Sampler::Independent, budget, seed, profile: stage.profile };
+    let settings = Settings {
+        options,
+        sampler: Sampler::Independent,
+        film_samples: FilmSamples::Own,
+        budget,
+        seed,
+        profile: stage.profile,
+    };
     let precision = Precision { error, confidence: 0.95 };
     render::render_to_precision(&stage.setup, film, &settings, precision, &[], &mut |_| {}).unwrap()
 }

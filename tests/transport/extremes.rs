@@ -119,3 +119,39 @@ fn white_balls_lose_nothing_to_long_walks() {
         assert!((pixel - 1.0).abs().max_element() < 1e-4, "{pixel}");
     }
 }
+
+/// A medium of density 0 costs what vacuum does: it is left out of the code that renders. One that shines stays.
+#[test]
+fn media_of_density_0_are_vacuum() {
+    let stage = |fog: Value| {
+        Stage::new(&scene(&[
+            ("sensor", camera([0.0, 0.0, 3.5], [0.0; 3], 8)),
+            ("sky", sky(1.0)),
+            ("ball", null_ball([0.0; 3], 1.0, fog)),
+            ("floor", floor(-1.5, 2.0, 0.5)),
+        ]))
+    };
+    let of = |sigma_t: Value, scale: f64, more: &[(&str, Value)]| {
+        let fog = json!({"type": "heterogeneous", "sigma_t": sigma_t, "scale": scale, "albedo": 0.8});
+        stage(with(fog, more))
+    };
+    let constant = |value: f64| json!({"type": "constvolume", "value": value});
+    let waves = |value: f64| json!({"type": "cosine", "value": value, "constant": 1, "wave": {"type": "wave", "amplitude": 0.5, "vector": [0, 1, 0]}});
+    let vacuum = stage(medium(0.0, 0.8, 0.0));
+    let truth = vacuum.render(Strategies::PT, 4, 1);
+    for (name, nothing) in [
+        ("constant", of(constant(0.0), 1.0, &[])),
+        ("scale", of(constant(3.0), 0.0, &[])),
+        ("waves", of(waves(0.0), 1.0, &[])),
+        ("scaled waves", of(waves(2.0), 0.0, &[])),
+    ] {
+        assert_eq!(nothing.profile, vacuum.profile, "{name}");
+        assert_eq!(nothing.render(Strategies::PT, 4, 1), truth, "{name}");
+    }
+    let thin = of(waves(1e-3), 1.0, &[]);
+    assert_ne!(thin.profile, vacuum.profile);
+    let shining = of(constant(0.0), 1.0, &[("emission", constant(0.5))]);
+    let brighter = shining.render(Strategies::PT, 4, 1);
+    let sum = |image: &[tyndall::math::Spectrum]| image.iter().map(|value| value.y).sum::<f32>();
+    assert!(sum(&brighter) > 1.05 * sum(&truth), "{} and {}", sum(&brighter), sum(&truth));
+}

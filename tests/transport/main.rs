@@ -14,6 +14,7 @@ mod equiangular;
 mod extremes;
 mod faces;
 mod faults;
+mod film_samples;
 mod forced;
 mod gather;
 mod glowing;

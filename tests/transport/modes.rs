@@ -72,10 +72,10 @@ const FOG: Spectrum = Spectrum::new(0.1, 0.4, 0.9);
 
 /// The preview of a scene, as its integrator describes it.
 fn preview(scene: &Value) -> Vec<Spectrum> {
-    let Stage { setup, profile } = Stage::new(scene);
+    let Stage { setup, profile, film_samples } = Stage::new(scene);
     let options = Options { heuristic: Heuristic::Balance, max_depth: None, ..setup.integrator.options };
     let budget = Budget::samples(2);
-    let settings = Settings { options, sampler: Sampler::default(), budget, seed: 1, profile };
+    let settings = Settings { options, sampler: Sampler::default(), film_samples, budget, seed: 1, profile };
     render::preview(&setup, &setup.film, &settings, &setup.integrator.fog, &[], &mut |_| {}).unwrap().pixels
 }
 

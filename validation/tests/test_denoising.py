@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import tyndall
-from tyndall.failure import Failure
+from tyndall.failure import Failure, TyndallWarning
 from validation.places import CROSSCHECK, SCENES
 
 SCENE = CROSSCHECK / "fog_isotropic.json"
@@ -43,7 +43,9 @@ def test_what_is_denoised_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert found.save(tmp_path / "fog.exr") == tmp_path / "fog.denoised.exr" and found.save(tmp_path / "fog.denoised.png").is_file()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["fog.denoised.exr", "fog.denoised.png"]
     assert tyndall.read(tmp_path / "fog.denoised.exr").metadata["denoised"] == "Open Image Denoise"
-    tyndall.render(SCENE, spp=1, size=(8, 6)).denoised()
+    with pytest.warns(TyndallWarning, match="film_samples='own'"):
+        tyndall.render(SCENE, spp=1, size=(8, 6)).denoised()
+    tyndall.render(SCENE, spp=1, size=(8, 6), film_samples="own").denoised()
     assert set(calls[1]) == {"color", "hdr"}
 
 

@@ -21,7 +21,8 @@ pub struct Pixel {
 pub struct Sample {
     /// Number of the pass, from 0.
     pub sample: u64,
-    /// What the pass adds to the pixel: the sum of the values of all contributions and splats.
+    /// What the pass finds in the pixel, and adds to it if pixels have samples of their own: the sum of the values of all
+    /// contributions and splats.
     pub value: [f32; 3],
     /// Where on the film the camera subpath starts (pixels).
     pub film: [f32; 2],

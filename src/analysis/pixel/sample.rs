@@ -34,7 +34,7 @@ pub struct PixelSample {
     pub splats: Vec<Splat>,
     /// The light subpaths that the others name by number.
     pub light: BTreeMap<u64, Walk>,
-    /// The sum: what the pass adds to the pixel.
+    /// The sum: what the pass adds to the pixel, if pixels have samples of their own.
     pub value: Spectrum,
 }
 

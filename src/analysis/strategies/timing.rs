@@ -199,6 +199,7 @@ impl Times {
 mod tests {
     use super::*;
     use crate::{
+        film::sharing::FilmSamples,
         format,
         passes::{Settings, budget::Budget},
         sampling::Sampler,
@@ -218,7 +219,8 @@ mod tests {
         let options = Options { strategies: Strategies::BDPT, ..setup.integrator.options };
         let profile = ProfileName::leanest(Needs::of(&setup.scene, false));
         let (sampler, budget) = (Sampler::Independent, Budget::ENDLESS);
-        let settings = Settings { options, sampler, budget, seed: 0, profile };
+        let settings =
+            Settings { options, sampler, film_samples: FilmSamples::Own, budget, seed: 0, profile };
         let instrument = Instrument::new(&setup.scene, &setup.film, &settings);
         let table = StrategyTable { depth: 1 };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();

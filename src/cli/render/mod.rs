@@ -10,7 +10,7 @@ pub(super) mod precision;
 pub(super) mod preview;
 mod progressive;
 pub(super) mod target;
-mod task;
+pub(super) mod task;
 mod viewer;
 
 use super::{

@@ -3,8 +3,9 @@
 use super::{arguments::Render, precision::precision, progressive, viewer::Viewer};
 use crate::{
     analysis::study::clock::CpuClock,
-    cli::{console::complain, interrupt, parsers::Samples, provenance},
-    error::Result,
+    cli::{console::complain, estimator::Estimator, interrupt, parsers::Samples, provenance},
+    error::{Error, Result},
+    film::sharing::FilmSamples,
     learning::pilot::Choice,
     passes::{Settings, budget::Budget},
     render::{Precision, sums::Picture},
@@ -40,8 +41,8 @@ impl<'a> Task<'a> {
         let clock = CpuClock::start(0.0);
         let (settings, chosen) = settings(arguments, setup)?;
         let precision = precision(arguments, setup, &settings)?;
-        let made =
-            provenance::made(provenance::settings(&arguments.scene, setup, &settings, chosen, precision)?);
+        let recorded = provenance::settings(&arguments.scene, setup, &settings, chosen, precision)?;
+        let made = provenance::made(recorded, provenance::shares_samples(setup, &settings));
         let settings = Settings { seed: arguments.seed_of_part(), ..settings };
         Ok((Self { settings, precision, arguments, made, viewer, clock }, chosen))
     }
@@ -56,11 +57,33 @@ impl<'a> Task<'a> {
     }
 }
 
-fn settings(arguments: &Render, setup: &Setup) -> Result<(Settings, Option<Choice>)> {
-    let estimator = match arguments.pixels.progressive {
-        None => arguments.estimator.clone(),
-        Some(_) => progressive::estimator(&arguments.estimator, setup)?,
+/// How paths are sampled: pixels have samples of their own where they need different numbers, and for denoisers, which
+/// expect that the noise of pixels is independent.
+pub(in crate::cli) fn estimator(arguments: &Render, setup: &Setup) -> Result<Estimator> {
+    let Render { estimator, error, pixels, denoise, .. } = arguments;
+    let mut estimator = match pixels.progressive {
+        None => estimator.clone(),
+        Some(_) => progressive::estimator(estimator, setup)?,
     };
+    let uneven = [(error.is_some(), "--error"), (pixels.progressive.is_some(), "--progressive")];
+    let uneven = uneven.into_iter().find_map(|(is_given, name)| is_given.then_some(name));
+    if let (Some(name), Some(FilmSamples::Shared)) = (uneven, estimator.film_samples) {
+        let expected = format!("own with {name}, where pixels have different numbers of samples");
+        return Err(Error::new(
+            "--film-samples",
+            expected,
+            "shared",
+            format!("remove {name} or --film-samples"),
+        ));
+    }
+    if uneven.is_some() || *denoise {
+        estimator.film_samples.get_or_insert(FilmSamples::Own);
+    }
+    Ok(estimator)
+}
+
+fn settings(arguments: &Render, setup: &Setup) -> Result<(Settings, Option<Choice>)> {
+    let estimator = estimator(arguments, setup)?;
     let started = Instant::now();
     let (settings, chosen) = estimator.chosen(setup, arguments.seed, to_come(arguments, setup))?;
     let spent = started.elapsed();

@@ -94,8 +94,13 @@ pub(crate) struct Forecast {
 
 impl Forecast {
     /// Gathers the samples of so many `passes` over at least so many `pixels` of `compiled`, whose walks end by
-    /// `survival`.
-    pub(super) fn fly(compiled: &dyn Compiled, survival: Survival, passes: usize, pixels: usize) -> Self {
+    /// `survival`. Images will have the part `left` of the variance that camera samples have here.
+    pub(super) fn fly(
+        compiled: &dyn Compiled,
+        survival: Survival,
+        [passes, pixels]: [usize; 2],
+        left: f64,
+    ) -> Self {
         let blocks = pixels.div_ceil(PIXELS_PER_BLOCK).clamp(1, compiled.blocks().count());
         let mut parts: Vec<Part> = Vec::new();
         for pass in 0..passes {
@@ -106,10 +111,10 @@ impl Forecast {
             parts.par_extend((0..blocks).into_par_iter().map(|block| part(compiled, survival, pass, block)));
         }
         let is_learnt = compiled.starts().is_some();
-        Self { survival, is_learnt, ..Self::of(parts, compiled.film(), compiled.blocks()) }
+        Self { survival, is_learnt, ..Self::of(parts, compiled.film(), compiled.blocks(), left) }
     }
 
-    fn of(parts: Vec<Part>, film: &Film, blocks: &Blocks) -> Self {
+    fn of(parts: Vec<Part>, film: &Film, blocks: &Blocks, left: f64) -> Self {
         let all = Tiles::of(film, TILES);
         let tile = |pixel| all.at(pixel);
         let mut tiles: Vec<Tile> =
@@ -134,7 +139,7 @@ impl Forecast {
         for part in parts {
             for one in part.camera.found {
                 let index = tile(one.pixel);
-                let square = one.square / tiles[index].samples;
+                let square = left * one.square / tiles[index].samples;
                 let (pixel, sample) = (place[&one.pixel], samples + one.sample);
                 found.push((index as u32, Found { square, pixel, sample, ..one }));
             }

@@ -12,7 +12,7 @@ pub use forecast::Error;
 
 use super::training;
 use crate::{
-    film::Film,
+    film::{Film, sharing::FilmSamples},
     passes::{Settings, compiled},
     sampling::Sampler,
     scene::Scene,
@@ -88,7 +88,7 @@ pub struct Choice {
     pub strategies: Strategies,
     /// How often.
     pub effort: Effort,
-    /// Error x time by all strategies at equal effort, over that of this choice, as the pilot sees it.
+    /// Error x time by all strategies at equal effort, over that of this choice, as the pilot judges both.
     pub gain: f64,
 }
 
@@ -198,12 +198,22 @@ impl Pilots<'_> {
             max_depth: Some(self.settings.options.depth_within(DEEPEST)),
             ..self.settings.options
         };
-        let settings = Settings { options, seed: SEED, sampler: Sampler::Independent, ..*self.settings };
+        let settings = Settings {
+            options,
+            seed: SEED,
+            sampler: Sampler::Independent,
+            film_samples: FilmSamples::Own,
+            ..*self.settings
+        };
         let samples = (SHARE * self.work).clamp(LEAST, MOST) as usize;
         let passes = PASSES.max(samples / self.film.len());
         let learnt = training::learn_for(self.scene, self.film, &settings);
         let compiled = compiled::by_kind(self.scene, self.film, &settings, learnt, PIXELS_PER_BLOCK);
-        Forecast::fly(&*compiled, effort.survival, passes, samples / passes)
+        let left = match self.settings.film_samples {
+            FilmSamples::Shared => self.film.variance_left(),
+            FilmSamples::Own => 1.0,
+        };
+        Forecast::fly(&*compiled, effort.survival, [passes, samples / passes], left)
     }
 
     /// The roulettes to choose from. The pilot uses the first and forecasts those that end walks sooner. Endless fog
@@ -239,7 +249,8 @@ impl Pilots<'_> {
         }
         candidates.sort_by(|a, b| a.judgement.total_cmp(&b.judgement));
         let best = candidates[0];
-        let cost = |one: &Foretold| one.error.all() * one.time;
+        // With the same allowance for rare bright paths in both: what few samples saw of these would decide the ratio.
+        let cost = |one: &Foretold| (one.error.usual + UNSEEN * least) * one.time;
         let gain = base.map_or(1.0, |base| cost(&base) / cost(&best));
         Report { choice: Choice { gain, ..best.choice }, candidates, samples: pilot.samples() }
     }
@@ -348,7 +359,17 @@ mod tests {
         let setup = build::build(&format::read(&path, &[]).unwrap(), overrides).unwrap();
         let options = Options { strategies, ..setup.integrator.options };
         let (sampler, budget) = (Sampler::Independent, Budget::ENDLESS);
-        (setup, Settings { options, sampler, budget, seed: 0, profile: ProfileName::Everything })
+        (
+            setup,
+            Settings {
+                options,
+                sampler,
+                film_samples: FilmSamples::Own,
+                budget,
+                seed: 0,
+                profile: ProfileName::Everything,
+            },
+        )
     }
 
     /// The pilot of an image without end, with learnt starts or without.

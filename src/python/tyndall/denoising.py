@@ -1,11 +1,12 @@
 """Open Image Denoise on pictures, with albedo and normals where a render made them. Its package is an extra:
 `pip install tyndall[denoise]`."""
 
+import warnings
 from typing import Any
 
 import numpy as np
 
-from tyndall.failure import Failure
+from tyndall.failure import Failure, TyndallWarning
 from tyndall.picture import Picture
 from tyndall.scene import Scene, integrator, load
 
@@ -31,8 +32,10 @@ def library() -> Any:
 
 
 def denoised(picture: Picture) -> Picture:
-    """The picture as Open Image Denoise sees it."""
+    """The picture as Open Image Denoise sees it. A warning says where much noise will stay."""
     pyoidn = library()
+    if picture.metadata.get("shares_samples"):
+        warnings.warn("pixels of this picture share samples, so that their noise is alike, and much of it will stay: render it with features=True, or with film_samples='own'", TyndallWarning, stacklevel=3)  # fmt: skip
     layers = picture.layers
     features: dict[str, Any] = {name: single(layers[name]) for name in (ALBEDO, NORMAL) if name in layers}
     found = pyoidn.denoise(single(picture), hdr=True, **features)

@@ -23,7 +23,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    film::{Channel, Film, accumulator::Accumulator, layer::Layer},
+    film::{Channel, Film, accumulator::Accumulator, layer::Layer, sharing::FilmSamples},
     math::{DVec3, Spectrum, vec2},
     passes::{Settings, blocks::Blocks, faults::Faults, pass::Outcome},
     scene::Scene,
@@ -112,6 +112,8 @@ pub fn run(
     watch: &mut dyn FnMut(Progress, &dyn Picture),
 ) -> Result<(Image, Shaded)> {
     let started = Instant::now();
+    // Not every pixel has samples.
+    let settings = &Settings { film_samples: FilmSamples::Own, ..*settings };
     let stage = Stage::still(Instrument::of_blocks(GROUP, scene, film, settings));
     let instrument = &stage.instrument;
     let fog = fog.map(|fog| Preview::of(&*instrument.compiled, fog, settings));

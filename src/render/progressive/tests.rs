@@ -1,5 +1,6 @@
 use super::{conductance::Maps, mesh::Mesh, queue::Queue, regions::Outlines, sight::FirstSurface, *};
 use crate::{
+    film::sharing::FilmSamples,
     format,
     math::{Vec3, vec3},
     passes::budget::Budget,
@@ -163,7 +164,17 @@ fn small(scene: &str, strategies: Strategies, connections: Connections) -> (Setu
     let strategies = strategies.without(StrategyKind::Lens);
     let options = Options { strategies, connections, max_depth: Some(6), ..setup.integrator.options };
     let (sampler, budget) = (Sampler::Sobol, Budget::samples(3));
-    (setup, Settings { options, sampler, budget, seed: 5, profile: ProfileName::Everything })
+    (
+        setup,
+        Settings {
+            options,
+            sampler,
+            film_samples: FilmSamples::Own,
+            budget,
+            seed: 5,
+            profile: ProfileName::Everything,
+        },
+    )
 }
 
 fn made(setup: &Setup, settings: &Settings, method: Method, fraction: f64) -> (Image, Shaded) {

@@ -3,7 +3,7 @@
 
 use super::samples::Samples;
 use crate::{
-    film::{Film, accumulator::Accumulator, noise::Noise},
+    film::{Film, accumulator::Accumulator, noise::Noise, sharing::Sharing},
     math::Spectrum,
     passes::{
         blocks::Blocks,
@@ -36,6 +36,8 @@ pub struct Sums {
     /// What went wrong on the way.
     pub(in crate::render) faults: Faults,
     width: usize,
+    /// Pixels share the samples of a pass.
+    is_shared: bool,
 }
 
 impl Sums {
@@ -65,6 +67,7 @@ impl Sums {
             noted,
             faults: Faults::default(),
             width,
+            is_shared: false,
         }
     }
 
@@ -111,14 +114,20 @@ impl Sums {
         }
     }
 
-    /// Adds the next block of the pass of sample `sample`, of `count` blocks.
-    pub(in crate::render) fn add(&mut self, sample: u64, outcome: &Outcome, count: usize) {
-        self.sample = sample;
+    /// Adds the next block of the pass of sample `sample`, of `count` blocks, whose pixels share samples by `sharing`.
+    pub(in crate::render) fn add(
+        &mut self,
+        sample: u64,
+        outcome: &Outcome,
+        count: usize,
+        sharing: Option<&Sharing<'_>>,
+    ) {
+        (self.sample, self.is_shared) = (sample, sharing.is_some());
         self.pass.add(outcome);
         self.faults.add(&outcome.faults);
         self.blocks += 1;
         if self.blocks == count {
-            self.pass.finish(|pass| self.accumulator.add(sample, pass));
+            self.pass.finish(sharing, |pass| self.accumulator.add(sample, pass));
             self.samples.insert(sample);
             self.blocks = 0;
         }
@@ -152,7 +161,8 @@ impl Sums {
 
     /// The mean. In its finished blocks, the unfinished pass is weighted by its finished fraction: the fewer the
     /// blocks, the less certain the light that it found. No pixel is biased. Pixels without any sample take the mean of
-    /// those around them.
+    /// those around them. Where pixels share samples, a pass counts once it is whole; but before the first one is, each
+    /// pixel shows what was found within it.
     pub fn pixels(&self) -> Vec<Spectrum> {
         self.plane(0)
     }
@@ -165,6 +175,9 @@ impl Sums {
             return self.pass.pixels(&blocks, self.blocks, self.width, plane);
         }
         let (mut pixels, passes) = (self.accumulator.mean_of(plane), self.accumulator.passes() as f32);
+        if self.is_shared {
+            return pixels;
+        }
         let done = self.unfinished() as f32;
         for pixel in (0..self.blocks).flat_map(|block| blocks.pixels(block)) {
             let both = pixels[pixel] * passes + self.pass.estimate(first + pixel, done) * done;
@@ -178,7 +191,7 @@ impl Sums {
         Image {
             pixels: self.pixels(),
             samples_per_pixel: self.samples.count(),
-            unfinished: self.unfinished(),
+            unfinished: if self.is_shared && self.samples.count() > 0 { 0.0 } else { self.unfinished() },
             elapsed: self.elapsed,
             noise: self.noise,
             alpha: Vec::new(),
@@ -212,7 +225,7 @@ mod tests {
         for task in 0..3 * count {
             let sample = (task / count) as u64;
             sums.start(sample);
-            sums.add(sample, &outcome(&blocks, task % count, film.len()), count);
+            sums.add(sample, &outcome(&blocks, task % count, film.len()), count, None);
             let pixels = sums.pixels();
             // Whatever is done: 1 by its own samples, and by light a half for each of the blocks.
             let expected = 1.0 + 0.5 * count as f32;
@@ -235,7 +248,7 @@ mod tests {
             for task in 0..tasks {
                 let sample = (task / 4) as u64;
                 sums.start(sample);
-                sums.add(sample, &outcome(&blocks, task % 4, film.len()), 4);
+                sums.add(sample, &outcome(&blocks, task % 4, film.len()), 4, None);
             }
             sums.note_noise(&|_| 0.0);
             sums.elapsed = Duration::from_secs(3);

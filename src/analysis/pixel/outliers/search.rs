@@ -157,7 +157,7 @@ pub(super) fn search(
         let all = light.found.into_iter().chain(found);
         all.for_each(|one| keep(&mut brightest[one.pixel as usize], one));
         if ends_pass {
-            pass.finish(|image| moments.add(image));
+            pass.finish(None, |image| moments.add(image));
             progress(moments.passes());
         }
     };
