@@ -47,6 +47,8 @@ DENOISE = "--denoise"
 """Pictures of commands with it are large, and JPEG files with a smaller one for the table; they are measured as they are before."""
 QUALITY = 88
 """Of JPEG files: what they lose is not seen beside what a denoiser loses."""
+NOISY_QUALITY = 70
+"""Of Mitsuba's: most of them are full of noise, which takes most of a file."""
 SMALL = 480
 """Pixels across a small picture, twice as many as it is shown by."""
 
@@ -195,7 +197,8 @@ def keep(png: Path, picture: Path) -> None:
         return
     with Image.open(png) as image:
         whole = image.convert("RGB")
-    whole.save(picture, quality=QUALITY, optimize=True)
+    quality = NOISY_QUALITY if ".mitsuba" in picture.suffixes else QUALITY
+    whole.save(picture, quality=quality, optimize=True)
     whole.resize((SMALL, round(whole.height * SMALL / whole.width)), Image.Resampling.LANCZOS).save(small(picture), quality=QUALITY, optimize=True)
 
 

@@ -1,6 +1,7 @@
 """Denoising, by Open Image Denoise where it is installed, and by a stand-in."""
 
 import sys
+import warnings
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -43,10 +44,19 @@ def test_what_is_denoised_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert found.save(tmp_path / "fog.exr") == tmp_path / "fog.denoised.exr" and found.save(tmp_path / "fog.denoised.png").is_file()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["fog.denoised.exr", "fog.denoised.png"]
     assert tyndall.read(tmp_path / "fog.denoised.exr").metadata["denoised"] == "Open Image Denoise"
-    with pytest.warns(TyndallWarning, match="film_samples='own'"):
-        tyndall.render(SCENE, spp=1, size=(8, 6)).denoised()
-    tyndall.render(SCENE, spp=1, size=(8, 6), film_samples="own").denoised()
+    tyndall.render(SCENE, spp=1, size=(8, 6)).denoised()
     assert set(calls[1]) == {"color", "hdr"}
+
+
+def test_shared_samples_are_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pyoidn", blurred([]))
+    few: dict[str, Any] = {"spp": 1, "size": (8, 6)}
+    with pytest.warns(TyndallWarning, match="film_samples='own'"):
+        tyndall.render(SCENES / "foggy_room.json", **few).denoised()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", TyndallWarning)
+        tyndall.render(SCENES / "foggy_room.json", film_samples="own", **few).denoised()
+        tyndall.render(SCENES / "foggy_room.json", features=True, **few).denoised()
 
 
 def test_without_the_package_it_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
