@@ -401,7 +401,8 @@ impl Estimator {
     fn film_samples(&self, setup: &Setup) -> FilmSamples {
         let needs_own = |layer: &Layer| layer.needs_squares() || layer.is_for_denoisers();
         let has_such = setup.integrator.layers.iter().any(needs_own);
-        self.film_samples.unwrap_or(if has_such { FilmSamples::Own } else { FilmSamples::Shared })
+        let usual = if has_such { FilmSamples::Own } else { FilmSamples::Shared };
+        if setup.film.can_share() { self.film_samples.unwrap_or(usual) } else { FilmSamples::Own }
     }
 
     fn sampler(&self, setup: &Setup) -> Sampler {

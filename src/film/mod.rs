@@ -91,9 +91,9 @@ impl Film {
     fn bordered(window: Window, filter: Filter, border: [[u32; 2]; 2], format: Format) -> Self {
         let [width, height] = window.size;
         let (across, down) = (Axis::new(filter, width, border[0]), Axis::new(filter, height, border[1]));
-        // Those of a box filter keep their own samples anyway; where a film is sampled beyond its border, there are no
-        // samples beyond to share.
-        let is_shared = filter != Filter::Box && border == [[0; 2]; 2];
+        // Filters that end within the pixel have nothing to share; where a film is sampled beyond its border, there are
+        // no samples beyond to share.
+        let is_shared = filter.radius() > 0.5 && border == [[0; 2]; 2];
         let places = is_shared.then(|| Places::new(&filter));
         Self { width, height, window, filter, border, format, across, down, places }
     }
