@@ -65,7 +65,8 @@ def tyndall_renderer(scene: Scene, method: str, size: Size = None, threads: int 
     """Tyndall on this scene."""
     # Evenly spread samples leave so little noise that the test would measure Mitsuba's own approximations, such as
     # filters in tables, and how independent the batches of its even samplers are.
-    options = {**options_of(method), "size": size, "sampler": "independent", "threads": threads}
+    # Where only film positions vary, shared samples would make the errors of all pixels one: no share of them can be judged.
+    options = {**options_of(method), "size": size, "sampler": "independent", "film_samples": "own", "threads": threads}
     render = lambda effort: tyndall.render_batches(scene, effort.batches, spp=effort.spp, seed=effort.seed, **options)
     return lambda effort: Measured.of(render(effort))
 

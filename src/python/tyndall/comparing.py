@@ -121,7 +121,7 @@ def small(scene: Scene) -> tuple[int, int]:
 
 def tyndall_image(scene: Scene, integrator: str, size: tuple[int, int]) -> Image:
     """Images by Tyndall: with samples as independent as Mitsuba's, and with all strategies, so that all are tested."""
-    options: dict[str, Any] = {"integrator": integrator, "size": size, "sampler": "independent"}
+    options: dict[str, Any] = {"integrator": integrator, "size": size, "sampler": "independent", "film_samples": "own"}
     options |= {"strategies": ALL_STRATEGIES} if integrator == "bdpt" else {}
     return lambda spp, seed: run(scene, spp=spp, seed=seed, **options).image
 
