@@ -42,8 +42,8 @@ pub(super) fn run(Denoise { image, display }: &Denoise) -> Result<()> {
     check()?;
     if shares_samples(image)? {
         complain(&format!(
-            "warning: pixels of {} share samples, so that their noise is alike, and much of it will stay; render it with \
-             --denoise, or with --film-samples own",
+            "warning: pixels of {} share samples. The denoiser leaves much of such noise: render the image with --denoise, \
+             or with --film-samples own",
             image.display()
         ));
     }

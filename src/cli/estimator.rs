@@ -146,14 +146,14 @@ pub struct Estimator {
     #[arg(long, value_name = "NAME", value_parser = one_of(&Sampler::NAMES))]
     pub sampler: Option<Sampler>,
 
-    /// Which samples of camera subpaths a pixel takes [default: shared, but own with --denoise, --error, layers of
-    /// moments or variances, and the layers first_albedo and first_normal, which denoisers need]
+    /// Which camera samples a pixel takes [default: shared; own with --denoise, --error, --progressive, layers of moments or
+    /// variances, and the layers first_albedo and first_normal, which denoisers need]
     ///
-    /// shared: all that its filter reaches, also those of the pixels around it; own: as many as the image has per pixel,
-    /// distributed by its filter (filter importance sampling). The expected image is the same. Shared samples leave a
-    /// third of the variance under the default filter; the noise of neighbouring pixels is alike, which denoisers do
-    /// not expect. With a box filter, with a film that is sampled beyond its border, and with --crop, samples are
-    /// always a pixel's own.
+    /// shared: all that its filter reaches, also those of the pixels around it; own: its own, distributed by its filter
+    /// (filter importance sampling). The expected image is the same. Under the default filter, shared samples leave a
+    /// third of the variance. They make the noise of neighbouring pixels alike, which denoisers do not expect. A pixel
+    /// always takes its own samples with a filter that ends within the pixel (box), with a film that is sampled beyond
+    /// its border, and with --crop.
     #[arg(long, value_name = "NAME", value_parser = one_of(&FilmSamples::NAMES))]
     pub film_samples: Option<FilmSamples>,
 

@@ -1,8 +1,8 @@
 //! Camera samples that neighbouring pixels share. In a pass, the sample of every pixel lies at the same place within it.
 //! Each pixel then takes those of all pixels around it that its filter reaches, weighted by the filter over the density
-//! of places. Every pass is an unbiased estimate of the filtered image. An even image comes out even: where filters of
-//! neighbours add up to a constant, or places are distributed by the sum of all, these weights add up to 1. Only those of
-//! pixels at the border, whose filters are cut off, vary from pass to pass about 1.
+//! of places. Every pass is an unbiased estimate of the filtered image. An even image comes out even, because the weights
+//! add up to 1: places are distributed by the sum of all filters, or that sum is constant. At the border filters are cut
+//! off, and the sum of the weights varies from pass to pass about 1.
 //!
 //! Filter importance sampling would leave each pixel one sample of a pass. Sharing divides the variance by 1 / integral
 //! of f^2 (3.1 for a Gaussian of half a pixel), and makes the noise of neighbouring pixels alike.
