@@ -261,7 +261,7 @@ impl Default for Effort {
 }
 
 /// How paths are sampled and weighted. A new option is a field here, with the parameter of a scene that it is read
-/// from, and a flag of the command line (`cli/estimator.rs`).
+/// from, and a flag of the command line (`cli/estimator/arguments.rs`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// What makes the image.

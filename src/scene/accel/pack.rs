@@ -41,8 +41,10 @@ impl WideRay {
     }
 }
 
-/// Up to four flat primitives, each as a plane and two reciprocal axes. Empty lanes are never hit.
+/// Up to four flat primitives, each as a plane and two reciprocal axes. Empty lanes are never hit. They are four whole cache
+/// lines, not parts of five.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(align(64))]
 pub(super) struct FlatPack {
     corner: Lanes,
     normal: Lanes,
