@@ -164,6 +164,7 @@ def grids() -> dict[str, tuple[np.ndarray, tuple]]:
         "smoke_colours.vol": (random.uniform(0, 1, (3, 4, 5, 3)) ** 1.5, UNIT),
         "albedo_colours.vol": (random.uniform(0.3, 1, (4, 3, 4, 3)), UNIT),
         "puffs.vol": (puffs(), UNIT),
+        "felt.vol": (felt(), UNIT),
     }
 
 
@@ -173,6 +174,15 @@ def puffs() -> np.ndarray:
     centres = ((3.5, 3, 3, 3.2), (16, 6, 8.5, 3.5), (9, 15.2, 5, 2.6))
     distances = [np.sqrt((x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2) / r for a, b, c, r in centres]
     return sum(np.maximum(0, 1 - d) for d in distances)
+
+
+def felt() -> np.ndarray:
+    """Matrices of microflakes that lie another way in every voxel: xx, yy, zz, xy, xz, yz; no area is above 1."""
+    random = np.random.default_rng(6)
+    axes, _ = np.linalg.qr(random.normal(size=(2, 3, 4, 3, 3)))
+    squared = random.uniform(0.02, 0.95, (2, 3, 4, 3))
+    matrices = np.einsum("...ik,...k,...jk->...ij", axes, squared, axes)
+    return np.stack([matrices[..., i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))], axis=-1)
 
 
 TENT = """# a closed roof of two slopes and two gables: polygons of four and of three corners, no normals

@@ -112,7 +112,7 @@ impl MediumDescription {
             }
         };
         match self.emission {
-            None => Ok(medium),
+            None => Ok(medium.with_varying_flakes()),
             Some(given) if has_flakes => {
                 let remedy = "overlap it with a medium that emits";
                 let expected =

@@ -5,28 +5,29 @@
 use super::{DistanceSample, MediaProfile, Medium, MediumInterval};
 use crate::{
     math::{RaySegment, Spectrum, Vec3},
-    phase::Phase,
+    phase::{Phase, Sggx},
 };
 
-impl MediumInterval {
-    /// The same interval, stretched `by` a factor.
-    #[inline]
-    fn stretched(&self, by: f32) -> Self {
-        Self { segment: self.segment.stretched(by), skipped: self.skipped * by }
-    }
-}
-
 impl Medium {
+    /// Flakes that are the same everywhere. Others do not stretch all of a ray alike (see [`super::varying_flakes`]).
+    #[inline(always)]
+    fn even_flakes(&self) -> Option<&Sggx> {
+        match &self.phase {
+            Phase::Sggx(flakes) if !flakes.varies() => Some(flakes),
+            _ => None,
+        }
+    }
+
     #[inline(always)]
     pub(super) fn has_flakes<M: MediaProfile>(&self) -> bool {
-        M::FLAKES && matches!(self.phase, Phase::Sggx(_))
+        M::FLAKES && self.depends_on_direction()
     }
 
-    /// Factor on extinction for light in unit `direction` or back: the area that flakes show; else 1.
+    /// Factor on extinction at a world position for light in unit `direction` or back: the area that flakes show; else 1.
     #[inline(always)]
-    pub fn area<M: MediaProfile>(&self, direction: Vec3) -> f32 {
+    pub fn area<M: MediaProfile>(&self, position: Vec3, direction: Vec3) -> f32 {
         match &self.phase {
-            Phase::Sggx(flakes) if M::FLAKES => flakes.area(direction),
+            Phase::Sggx(flakes) if M::FLAKES => flakes.area_at(position, direction),
             _ => 1.0,
         }
     }
@@ -34,8 +35,8 @@ impl Medium {
     /// The interval stretched so that its extinction is that of flakes of unit area.
     #[inline(always)]
     pub(super) fn stretched<M: MediaProfile>(&self, interval: &MediumInterval) -> MediumInterval {
-        match &self.phase {
-            Phase::Sggx(flakes) if M::FLAKES => interval.stretched(flakes.area(interval.segment.direction)),
+        match self.even_flakes() {
+            Some(flakes) if M::FLAKES => interval.stretched(flakes.area(interval.segment.direction)),
             _ => *interval,
         }
     }
@@ -47,8 +48,8 @@ impl Medium {
         interval: &MediumInterval,
         sample: DistanceSample<M::Channels>,
     ) -> DistanceSample<M::Channels> {
-        match &self.phase {
-            Phase::Sggx(flakes) if M::FLAKES => {
+        match self.even_flakes() {
+            Some(flakes) if M::FLAKES => {
                 let RaySegment { direction, length, .. } = interval.segment;
                 let collision = sample.collision.map(|t| (t / flakes.area(direction)).min(length));
                 DistanceSample { collision, ..sample }
@@ -70,9 +71,6 @@ impl Medium {
 
     /// The segment stretched in the same way, for any profile.
     pub(super) fn stretched_segment(&self, segment: &RaySegment) -> RaySegment {
-        match &self.phase {
-            Phase::Sggx(flakes) => segment.stretched(flakes.area(segment.direction)),
-            _ => *segment,
-        }
+        self.even_flakes().map_or(*segment, |flakes| segment.stretched(flakes.area(segment.direction)))
     }
 }

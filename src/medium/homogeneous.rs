@@ -1,6 +1,6 @@
 //! A medium that is the same everywhere: optical depth is a product, and its inverse a quotient.
 
-use super::{DistanceSample, MediumInterval, MediumProperties};
+use super::{distance::DistanceSample, interval::MediumInterval, properties::MediumProperties};
 use crate::math::{Channels, Spectrum};
 
 /// Coefficients that are the same everywhere.

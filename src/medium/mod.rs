@@ -7,8 +7,11 @@ mod extinction;
 mod flakes;
 mod heterogeneous;
 mod homogeneous;
+mod interval;
 mod mixture;
 mod overrides;
+mod properties;
+mod varying_flakes;
 
 use crate::{
     error::Result,
@@ -23,18 +26,12 @@ use emission::{EmissionDescription, Within};
 pub use extinction::Extinction;
 pub use heterogeneous::Heterogeneous;
 use homogeneous::Homogeneous;
+pub use interval::MediumInterval;
 use mixture::Mixture;
 pub use overrides::MediumOverrides;
+pub use properties::{MediumIndex, MediumProperties};
 use std::sync::Arc;
-
-/// Index of a medium in its scene. Vacuum is a medium like any other, with nothing in it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct MediumIndex(pub u32);
-
-impl MediumIndex {
-    /// Every scene's medium 0.
-    pub const VACUUM: Self = Self(0);
-}
+use varying_flakes::VaryingFlakes;
 
 /// A medium: the same everywhere, or varying in space. Which of the two it is matters only in this module: light
 /// transport samples distances, and finds transmittances and properties, by the methods below.
@@ -61,6 +58,8 @@ enum Coefficients {
     Heterogeneous(Arc<Heterogeneous>),
     /// The sum of several media in one place.
     Mixture(Mixture),
+    /// Any but a mixture, of flakes that vary.
+    Flakes(Arc<VaryingFlakes>),
 }
 
 /// A medium as a profile sees it.
@@ -68,6 +67,7 @@ enum Model<'a> {
     Homogeneous(&'a Homogeneous),
     Heterogeneous(&'a Heterogeneous),
     Mixture(&'a Mixture),
+    Flakes(&'a VaryingFlakes),
 }
 
 /// Which media an estimator is compiled for. What it does not support is not tested for.
@@ -78,57 +78,6 @@ pub trait MediaProfile: Copy + Send + Sync + 'static {
     const HETEROGENEOUS: bool;
     /// Some medium's extinction depends on the direction of flight: what flakes show of themselves.
     const FLAKES: bool;
-}
-
-/// The properties of a medium at a point.
-#[derive(Clone, Copy, Debug)]
-pub struct MediumProperties {
-    /// Extinction coefficient (1/m).
-    pub sigma_t: Spectrum,
-    /// sigma_s / sigma_t, in [0, 1].
-    pub albedo: Spectrum,
-    /// The medium whose phase function scatters; one of several where media overlap.
-    pub medium: MediumIndex,
-}
-
-impl MediumProperties {
-    /// None.
-    pub const NOTHING: Self = Self::of(Spectrum::ZERO, Spectrum::ZERO);
-
-    /// Of a medium that has no place among others yet.
-    #[inline]
-    pub const fn of(sigma_t: Spectrum, albedo: Spectrum) -> Self {
-        Self { sigma_t, albedo, medium: MediumIndex::VACUUM }
-    }
-
-    /// Probability that a walk goes on after a collision (LW96 eq. 8): the largest channel of the albedo.
-    #[inline]
-    pub fn survival(&self) -> f32 {
-        self.albedo.max_element()
-    }
-}
-
-/// A stretch of a ray within one medium.
-#[derive(Clone, Copy, Debug)]
-pub struct MediumInterval {
-    /// The stretch.
-    pub segment: RaySegment,
-    /// Distance from the start of the medium to the stretch (m). It is 0 except behind a boundary, where a ray starts a
-    /// rounding error off the surface. In a homogeneous medium it counts, for a mean free path may be as short. Where
-    /// coefficients vary it does not.
-    pub skipped: f32,
-}
-
-impl MediumInterval {
-    /// All of `segment`, and nothing before it.
-    pub fn of(segment: RaySegment) -> Self {
-        Self { segment, skipped: 0.0 }
-    }
-
-    #[inline]
-    fn length(&self) -> f32 {
-        self.segment.length + self.skipped
-    }
 }
 
 /// Light that crosses an interval in which collisions are forced (see [`Medium::unforced`]).
@@ -161,6 +110,17 @@ impl Medium {
         Self { bound, coefficients: Coefficients::Heterogeneous(Arc::new(varying)), ..self }
     }
 
+    /// The same medium with its flakes as they vary, if they do.
+    fn with_varying_flakes(self) -> Self {
+        match &self.phase {
+            Phase::Sggx(flakes) if flakes.varies() => {
+                let varying = Arc::new(VaryingFlakes::new(&self, flakes));
+                Self { coefficients: Coefficients::Flakes(varying), ..self }
+            }
+            _ => self,
+        }
+    }
+
     /// Several media in one place: their coefficients add. Each emits for itself.
     pub fn mixture(media: Vec<Self>) -> Self {
         let mixture = Mixture(media.into());
@@ -185,7 +145,7 @@ impl Medium {
         }
         let same = Self { phase: phase.unwrap_or_else(|| self.phase.clone()), ..self.clone() };
         let medium = match varying {
-            Some(varying) => same.with(varying),
+            Some(varying) => same.with(varying).with_varying_flakes(),
             None => same,
         };
         let Some(before) = &self.given else { return Ok(Some(medium)) };
@@ -203,6 +163,7 @@ impl Medium {
     pub fn heterogeneous(&self) -> Option<&Heterogeneous> {
         match &self.coefficients {
             Coefficients::Heterogeneous(varying) => Some(varying),
+            Coefficients::Flakes(flakes) => flakes.mean().heterogeneous(),
             Coefficients::Homogeneous | Coefficients::Mixture(_) => None,
         }
     }
@@ -219,6 +180,7 @@ impl Medium {
             Coefficients::Homogeneous => Model::Homogeneous(&self.bound),
             Coefficients::Heterogeneous(varying) => Model::Heterogeneous(varying),
             Coefficients::Mixture(mixture) => Model::Mixture(mixture),
+            Coefficients::Flakes(flakes) => Model::Flakes(flakes),
         }
     }
 
@@ -234,6 +196,7 @@ impl Medium {
             Model::Homogeneous(bound) => !bound.0.sigma_t.is_grey(),
             Model::Heterogeneous(varying) => varying.is_chromatic(),
             Model::Mixture(mixture) => mixture.0.iter().any(Self::is_chromatic),
+            Model::Flakes(flakes) => flakes.mean().is_chromatic(),
         }
     }
 
@@ -258,6 +221,9 @@ impl Medium {
                 MediumProperties { medium: self.bound.0.medium, ..varying.at::<M::Channels>(position) }
             }
             Model::Mixture(mixture) => mixture.properties_at::<M>(component, position),
+            Model::Flakes(flakes) => {
+                MediumProperties { medium: self.bound.0.medium, ..flakes.properties_at::<M>(position) }
+            }
         }
     }
 
@@ -271,6 +237,7 @@ impl Medium {
             Model::Homogeneous(bound) => bound.optical_depth(interval.length()),
             Model::Heterogeneous(varying) => varying.depth(&interval.segment),
             Model::Mixture(mixture) => mixture.optical_depth::<M>(interval),
+            Model::Flakes(flakes) => flakes.optical_depth::<M>(interval),
         }
     }
 
@@ -289,6 +256,7 @@ impl Medium {
             }
             Model::Heterogeneous(varying) => varying.attenuation(&interval.segment, stream),
             Model::Mixture(mixture) => mixture.attenuation::<M>(interval, stream),
+            Model::Flakes(flakes) => flakes.attenuation::<M>(interval, stream),
         }
     }
 
@@ -306,6 +274,7 @@ impl Medium {
             Model::Homogeneous(_) => depth.flight_ratio(M::Channels::splat(1.0), hero),
             Model::Heterogeneous(varying) => varying.ratio(&interval.segment, depth, hero, stream),
             Model::Mixture(mixture) => mixture.transmittance_ratio::<M>(interval, hero, stream),
+            Model::Flakes(flakes) => flakes.transmittance_ratio::<M>(interval, hero, stream),
         }
     }
 
@@ -316,7 +285,7 @@ impl Medium {
         match self.model::<M>() {
             Model::Homogeneous(_) if self.has_flakes::<M>() => f32::INFINITY,
             Model::Homogeneous(bound) => bound.collision::<M::Channels>(skipped, hero, remaining),
-            Model::Heterogeneous(_) | Model::Mixture(_) => f32::INFINITY,
+            Model::Heterogeneous(_) | Model::Mixture(_) | Model::Flakes(_) => f32::INFINITY,
         }
     }
 
@@ -346,6 +315,7 @@ impl Medium {
                 varying.sample_distance(&stretched.segment, hero, remaining, stream)
             }
             Model::Mixture(mixture) => mixture.sample_distance::<M>(stretched, hero, stream),
+            Model::Flakes(flakes) => flakes.sample_distance::<M>(stretched, hero, stream),
         };
         self.shrunk::<M>(interval, sample)
     }
@@ -367,6 +337,7 @@ impl Medium {
             },
             Model::Heterogeneous(varying) => varying.unforced(&interval.segment, depth, hero, stream),
             Model::Mixture(mixture) => mixture.unforced::<M>(interval, hero, stream),
+            Model::Flakes(flakes) => flakes.unforced::<M>(interval, depth, hero, stream),
         }
     }
 
@@ -378,6 +349,7 @@ impl Medium {
             Model::Homogeneous(_) => depth.hero(hero),
             Model::Heterogeneous(varying) => varying.forced_depth(&interval.segment, depth, hero),
             Model::Mixture(mixture) => mixture.forced_depth::<M>(interval, hero),
+            Model::Flakes(flakes) => flakes.forced_depth::<M>(interval, hero),
         }
     }
 
@@ -397,6 +369,7 @@ impl Medium {
                 varying.force_collision(&stretched.segment, hero, remaining, stream)?
             }
             Model::Mixture(mixture) => mixture.force_collision::<M>(stretched, hero, remaining, stream)?,
+            Model::Flakes(flakes) => flakes.force_collision::<M>(stretched, hero, remaining, stream)?,
         };
         Some(self.shrunk::<M>(interval, sample))
     }
@@ -408,6 +381,7 @@ impl Medium {
             Model::Homogeneous(bound) => bound.optical_depth(segment.length),
             Model::Heterogeneous(varying) => varying.quick_depth(segment),
             Model::Mixture(mixture) => mixture.quick_depth(segment),
+            Model::Flakes(flakes) => flakes.quick_depth(segment),
         }
     }
 }

@@ -140,26 +140,39 @@ impl PhaseModel for Blend {
 }
 
 /// What differs from one point to another. What [`PhaseModel`] says of such a blend is so where its weight is the middle
-/// of its bounds.
+/// of its bounds, and of such flakes where their matrix is the mean of all.
 impl Phase {
     /// [`PhaseModel::pdf_sr`] at a world position.
     #[inline]
     pub fn pdf_sr_at(&self, position: Vec3, turn: Deflection) -> f32 {
-        let Self::Blend(blend) = self else { return self.pdf_sr(turn) };
-        blend.mean(blend.weight_at(position), |part| part.pdf_sr_at(position, turn))
+        match self {
+            Self::Blend(blend) => {
+                blend.mean(blend.weight_at(position), |part| part.pdf_sr_at(position, turn))
+            }
+            Self::Sggx(flakes) => flakes.pdf_sr_at(position, turn),
+            _ => self.pdf_sr(turn),
+        }
     }
 
     /// [`PhaseModel::sample`] at a world position.
     #[inline]
     pub fn sample_at(&self, position: Vec3, direction: Vec3, stream: &mut Stream) -> Vec3 {
-        let Self::Blend(blend) = self else { return self.sample(direction, stream) };
-        blend.choose(blend.weight_at(position), stream).sample_at(position, direction, stream)
+        match self {
+            Self::Blend(blend) => {
+                blend.choose(blend.weight_at(position), stream).sample_at(position, direction, stream)
+            }
+            Self::Sggx(flakes) => flakes.sample_at(position, direction, stream),
+            _ => self.sample(direction, stream),
+        }
     }
 
     /// True if it differs from one point to another.
     pub fn varies(&self) -> bool {
-        let Self::Blend(blend) = self else { return false };
-        blend.varying.is_some() || blend.parts.iter().any(Self::varies)
+        match self {
+            Self::Blend(blend) => blend.varying.is_some() || blend.parts.iter().any(Self::varies),
+            Self::Sggx(flakes) => flakes.varies(),
+            _ => false,
+        }
     }
 
     /// It at `time` (s); none where it is the same at all times.

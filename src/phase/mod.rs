@@ -2,8 +2,8 @@
 //!
 //! At a point all but flakes depend on the angle between the directions of flight before and after scattering alone (cos >
 //! 0 is forward), are normalised to 1 over the sphere, and are sampled exactly: the density of a sampled direction
-//! is the value of the function, both ways; of flakes, that times the area that they show is the same both ways. Only a
-//! blend may differ from one point to another.
+//! is the value of the function, both ways; of flakes, that times the area that they show is the same both ways. A
+//! blend and flakes may differ from one point to another.
 
 mod blend;
 mod cornette_shanks;

@@ -11,17 +11,23 @@ use crate::{
     error::{Error, Result},
     math::{DMat3, DVec3, Frame, Mat3, Vec3, warp},
     sampling::Stream,
-    volume::{self, Place},
+    volume::{Place, Sixfold},
 };
 use std::{f64::consts::PI, sync::Arc};
 
-/// Flakes of one distribution everywhere.
+/// Flakes, of one distribution everywhere or of one that varies. What does not ask for a position sees the distribution of
+/// the mean of all matrices.
 #[derive(Clone, Debug)]
-pub struct Sggx(Arc<Ellipsoid>);
+pub struct Sggx {
+    mean: Arc<Ellipsoid>,
+    varying: Option<Arc<Varying>>,
+}
 
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Ellipsoid {
-    /// B.
+    /// Square root of the largest number on the diagonal of S; 0 where there are no flakes.
+    size: f32,
+    /// B over that: any, where it is 0.
     root: Mat3,
     /// The inverse of its transpose: normals of unit length to where S^-1 is the squared length.
     inverse: Mat3,
@@ -29,72 +35,181 @@ struct Ellipsoid {
     quarter: f32,
 }
 
+/// A matrix for every position.
+#[derive(Debug)]
+struct Varying {
+    grid: Sixfold,
+    /// What instances do to areas.
+    turn: DMat3,
+    /// Bounds of the area shown anywhere over the mean's in the same direction.
+    shares: [f32; 2],
+}
+
 /// The largest number on the diagonal of S, from the first to the second; the thinnest flakes, of which single precision
 /// can tell normals apart, have the third of that as the square of their thickness.
 const RANGE: [f64; 3] = [1e-12, 1e12, 1e-8];
 
+/// The same for means of matrices within the range and of zeros.
+const ANY: [f64; 3] = [0.0, f64::INFINITY, 0.0];
+
 impl Sggx {
     pub(super) const TABLE: Table = table! {
         "Specular microflakes (Heitz et al. 2015): mirrors whose normals are distributed as those of an ellipsoid. The area that they show scales the medium's extinction.";
-        object("S", "volume", "A `gridvolume` of 6 channels: xx, yy, zz, xy, xz, yz of a positive definite matrix, the same everywhere; n S n is the squared area seen along n.").required(),
+        object("S", "volume", "A `gridvolume` of 6 channels: xx, yy, zz, xy, xz, yz of a positive definite matrix, or 0 where there are no flakes; n S n is the squared area seen along n.").required(),
     };
 
-    /// By S; none if that is no positive definite matrix, or out of range.
-    fn new(matrix: DMat3) -> Option<Self> {
-        let [least, most, thinnest] = RANGE;
-        let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
-        let largest = x.x.max(y.y).max(z.z);
-        // Cholesky: S = L L^T, and B = L^T.
-        let pivot = |squared: f64| (squared > thinnest * largest).then(|| squared.sqrt());
-        let a = pivot(x.x)?;
-        let (b, c) = (x.y / a, x.z / a);
-        let d = pivot(y.y - b * b)?;
-        let e = (y.z - b * c) / d;
-        let f = pivot(z.z - c * c - e * e)?;
-        let lower = DMat3::from_cols(DVec3::new(a, b, c), DVec3::new(0.0, d, e), DVec3::new(0.0, 0.0, f));
-        let ellipsoid = Ellipsoid {
-            root: lower.transpose().as_mat3(),
-            inverse: lower.inverse().as_mat3(),
-            quarter: (0.25 / (PI * a * d * f)) as f32,
-        };
-        (least..=most).contains(&largest).then(|| Self(Arc::new(ellipsoid)))
+    /// The same everywhere.
+    fn even(mean: Ellipsoid) -> Self {
+        Self { mean: Arc::new(mean), varying: None }
+    }
+
+    /// By the matrices of `grid`, each turned by `turn`.
+    fn new(grid: Sixfold, turn: DMat3) -> std::result::Result<Self, Unfit> {
+        let (mut sum, mut count) = (DMat3::ZERO, 0.0);
+        for (voxel, numbers) in grid.voxels() {
+            let matrix = turned(numbers, turn);
+            if matrix != DMat3::ZERO {
+                lower(matrix, RANGE).ok_or(Unfit { voxel, numbers })?;
+            }
+            (sum, count) = (sum + matrix, count + 1.0);
+        }
+        let mean = sum * (1.0 / count);
+        let nothing = Unfit { voxel: [0; 3], numbers: [0.0; 6] };
+        let shares = shares(&grid, turn, lower(mean, ANY).ok_or(nothing)?);
+        let varying = (shares[0] < 1.0 - EVEN || shares[1] > 1.0 + EVEN)
+            .then(|| Arc::new(Varying { grid, turn, shares }));
+        Ok(Self { varying, ..Self::even(Ellipsoid::new(mean)) })
     }
 
     pub(super) fn build(params: &Params<'_>, place: &Place) -> Result<Self> {
         let grid = params.child("S")?.ok_or_else(|| params.missing("S"))?;
-        let numbers = volume::sixfold(grid.object, params.library, place)?;
         // In an instance, areas turn with what they are of; extinction stays what it is per metre.
         let placed = place.instance.matrix3;
         let turn = placed.inverse().transpose() * placed.determinant().abs().cbrt();
-        Self::new(turn * symmetric(numbers.map(f64::from)) * turn.transpose()).ok_or_else(|| {
+        Self::new(Sixfold::read(grid.object, params.library, place)?, turn).map_err(|Unfit { voxel: [x, y, z], numbers }| {
             let [least, most, _] = RANGE;
             let expected = format!(
                 "xx, yy, zz, xy, xz, yz of a positive definite matrix, the largest from {least:e} to {most:e}"
             );
+            let found = format!("{:?} in the voxel ({x}, {y}, {z})", numbers.map(|number| number as f32));
             let remedy = "raise xx, yy and zz: the square of each other number is less than the product of the two \
                           in its row and column, and flakes have some thickness";
-            Error::new(&grid.object.location, expected, format!("{numbers:?}"), remedy)
+            Error::new(&grid.object.location, expected, found, remedy)
         })
     }
 
     /// Flakes without an order: as isotropic as they are many.
     #[cfg(test)]
     pub(super) fn examples() -> Vec<Self> {
-        [1.0, 0.3].iter().filter_map(|size| Self::new(DMat3::IDENTITY * *size)).collect()
+        [1.0, 0.3].map(|size| Self::even(Ellipsoid::new(DMat3::IDENTITY * size))).into()
     }
 
-    /// What no [`Self::area`] exceeds: by the row sums of S, which is the greatest area itself where S is diagonal.
+    /// True if it differs from one point to another.
+    pub fn varies(&self) -> bool {
+        self.varying.is_some()
+    }
+
+    /// Flakes of the mean matrix everywhere, with `by` times its area in every direction.
+    pub fn mean(&self, by: f32) -> Self {
+        Self::even(Ellipsoid { size: self.mean.size * by, ..*self.mean })
+    }
+
+    /// Bounds of [`Self::area_at`] over [`Self::area`], anywhere and in any direction.
+    pub fn shares(&self) -> [f32; 2] {
+        self.varying.as_ref().map_or([1.0; 2], |varying| varying.shares)
+    }
+
+    /// What no [`Self::area_at`] exceeds: by the row sums of S, which is the greatest area itself where S is diagonal and
+    /// the same everywhere.
     pub fn greatest_area(&self) -> f32 {
-        let matrix = self.0.root.transpose() * self.0.root;
-        let sums = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|row| row.abs().element_sum());
-        sums.into_iter().fold(0.0, f32::max).sqrt()
+        let Ellipsoid { size, root, .. } = *self.mean;
+        row_sum((root.transpose() * root).as_dmat3()).sqrt() as f32 * size * self.shares()[1]
     }
 
     /// The area that they show, per unit of extinction, to light that flies in unit `direction` or back.
     #[inline]
     pub fn area(&self, direction: Vec3) -> f32 {
-        (self.0.root * direction).length()
+        self.mean.area(direction)
     }
+
+    /// The same at a world position.
+    #[inline]
+    pub fn area_at(&self, position: Vec3, direction: Vec3) -> f32 {
+        self.at(position).area(direction)
+    }
+
+    /// [`PhaseModel::pdf_sr`] at a world position.
+    #[inline]
+    pub(super) fn pdf_sr_at(&self, position: Vec3, turn: Deflection) -> f32 {
+        self.at(position).pdf_sr(turn)
+    }
+
+    /// [`PhaseModel::sample`] at a world position.
+    #[inline]
+    pub(super) fn sample_at(&self, position: Vec3, direction: Vec3, stream: &mut Stream) -> Vec3 {
+        self.at(position).sample(direction, stream)
+    }
+
+    #[inline]
+    fn at(&self, position: Vec3) -> Ellipsoid {
+        self.varying.as_ref().map_or(*self.mean, |varying| varying.at(position))
+    }
+}
+
+impl Varying {
+    fn at(&self, position: Vec3) -> Ellipsoid {
+        Ellipsoid::new(turned(self.grid.at(position), self.turn))
+    }
+}
+
+/// A voxel whose numbers are no positive definite matrix, or out of range.
+#[derive(Debug)]
+struct Unfit {
+    voxel: [usize; 3],
+    numbers: [f64; 6],
+}
+
+/// Matrices count as equal if their areas differ by less.
+const EVEN: f32 = 1e-6;
+
+/// L of Cholesky's S = L L^T, whose transpose is B; none if S is no positive definite matrix, or out of range.
+fn lower(matrix: DMat3, [least, most, thinnest]: [f64; 3]) -> Option<DMat3> {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
+    let largest = x.x.max(y.y).max(z.z);
+    let pivot = |squared: f64| (squared > thinnest * largest).then(|| squared.sqrt());
+    let a = pivot(x.x)?;
+    let (b, c) = (x.y / a, x.z / a);
+    let d = pivot(y.y - b * b)?;
+    let e = (y.z - b * c) / d;
+    let f = pivot(z.z - c * c - e * e)?;
+    let lower = DMat3::from_cols(DVec3::new(a, b, c), DVec3::new(0.0, d, e), DVec3::new(0.0, 0.0, f));
+    (least..=most).contains(&largest).then_some(lower)
+}
+
+/// The matrix of six numbers, in an instance.
+fn turned(numbers: [f64; 6], turn: DMat3) -> DMat3 {
+    turn * symmetric(numbers) * turn.transpose()
+}
+
+/// Bounds of the area that any voxel shows over the mean's, whose L is `mean`. Seen with the mean as a sphere, the squares
+/// are bounded by the row sums of a matrix and of its inverse; between voxels S lies between theirs.
+fn shares(grid: &Sixfold, turn: DMat3, mean: DMat3) -> [f32; 2] {
+    let to_sphere = mean.inverse();
+    let bounds = grid.voxels().map(|(_, numbers)| {
+        let seen = to_sphere * turned(numbers, turn) * to_sphere.transpose();
+        let least = if seen == DMat3::ZERO { 0.0 } else { 1.0 / row_sum(seen.inverse()) };
+        [least, row_sum(seen)]
+    });
+    let wider = |[a, b]: [f64; 2], [least, most]: [f64; 2]| [a.min(least), b.max(most)];
+    bounds.fold([1.0; 2], wider).map(|square| square.sqrt() as f32)
+}
+
+/// The greatest sum of the magnitudes in a row: no eigenvalue of a symmetric matrix is greater.
+fn row_sum(matrix: DMat3) -> f64 {
+    [matrix.x_axis, matrix.y_axis, matrix.z_axis]
+        .into_iter()
+        .map(|row| row.abs().element_sum())
+        .fold(0.0, f64::max)
 }
 
 /// The matrix of the numbers xx, yy, zz, xy, xz and yz.
@@ -102,21 +217,54 @@ fn symmetric([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> DMat3 {
     DMat3::from_cols(DVec3::new(xx, xy, xz), DVec3::new(xy, yy, yz), DVec3::new(xz, yz, zz))
 }
 
-impl PhaseModel for Sggx {
+impl Ellipsoid {
+    /// Of S, which is positive definite or 0.
+    fn new(matrix: DMat3) -> Self {
+        let squared = matrix.x_axis.x.max(matrix.y_axis.y).max(matrix.z_axis.z);
+        let size = squared.sqrt();
+        let (size, lower) = match lower(matrix, ANY) {
+            Some(lower) => (size as f32, lower * size.recip()),
+            None => (0.0, DMat3::IDENTITY),
+        };
+        Self {
+            size,
+            root: lower.transpose().as_mat3(),
+            inverse: lower.inverse().as_mat3(),
+            quarter: (0.25 / (PI * lower.determinant())) as f32,
+        }
+    }
+
+    #[inline]
+    fn area(&self, direction: Vec3) -> f32 {
+        (self.root * direction).length() * self.size
+    }
+
     /// A quarter of the density of normals at the one that mirrors so, over the area seen.
     #[inline]
     fn pdf_sr(&self, turn: Deflection) -> f32 {
         let normal = turn.normal();
-        let squared = (self.0.inverse * normal).length_squared() / normal.length_squared();
-        self.0.quarter / (squared * squared * self.area(turn.before()))
+        let squared = (self.inverse * normal).length_squared() / normal.length_squared();
+        self.quarter / (squared * squared * (self.root * turn.before()).length())
     }
 
     #[inline]
     fn sample(&self, direction: Vec3, stream: &mut Stream) -> Vec3 {
-        let facing = Frame::around((self.0.root * -direction).normalize());
+        let facing = Frame::around((self.root * -direction).normalize());
         let on_sphere = facing.to_world(warp::to_cosine_hemisphere(stream.square()));
-        let normal = (self.0.root.transpose() * on_sphere).normalize();
+        let normal = (self.root.transpose() * on_sphere).normalize();
         (direction - 2.0 * direction.dot(normal) * normal).normalize()
+    }
+}
+
+impl PhaseModel for Sggx {
+    #[inline]
+    fn pdf_sr(&self, turn: Deflection) -> f32 {
+        self.mean.pdf_sr(turn)
+    }
+
+    #[inline]
+    fn sample(&self, direction: Vec3, stream: &mut Stream) -> Vec3 {
+        self.mean.sample(direction, stream)
     }
 
     /// In light from everywhere, flakes reflect as much onwards as back.
@@ -138,7 +286,8 @@ mod tests {
     const SKEWED: [f64; 6] = [0.09, 0.5, 0.25, 0.05, 0.02, 0.01];
 
     fn flakes(numbers: [f64; 6]) -> Sggx {
-        Sggx::new(symmetric(numbers)).unwrap()
+        assert!(lower(symmetric(numbers), RANGE).is_some());
+        Sggx::even(Ellipsoid::new(symmetric(numbers)))
     }
 
     fn pdf(flakes: &Sggx, towards: Vec3, outgoing: Vec3) -> f32 {
@@ -228,7 +377,7 @@ mod tests {
             ([f64::INFINITY, 1.0, 1.0, 0.0, 0.0, 0.0], false),
             ([1e-30, 1e-30, 1e-30, 0.0, 0.0, 0.0], false),
         ] {
-            assert_eq!(Sggx::new(symmetric(numbers)).is_some(), is_fine, "{numbers:?}");
+            assert_eq!(lower(symmetric(numbers), RANGE).is_some(), is_fine, "{numbers:?}");
         }
     }
 }

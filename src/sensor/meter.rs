@@ -5,7 +5,8 @@ use crate::{
     description::{Params, Table, params::Child, table},
     error::{Error, Result},
     math::{Bounds, DMat4, DVec3, Vec2, Vec3, warp},
-    shape::{self, Shape},
+    sampling::Stream,
+    shape::{self, Shape, ShapeModel as _},
 };
 use std::f32::consts::FRAC_1_PI;
 
@@ -20,7 +21,7 @@ pub struct Meter {
 }
 
 /// Where the rays start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 enum Extent {
     /// All over a parallelogram.
     Rectangle,
@@ -28,6 +29,9 @@ enum Extent {
     Disc,
     /// At one point. No light subpath finds the one ray from there.
     Ray,
+    /// All over a shape, so far in front of it as the one point lies before the origin. Several rays meet at a point
+    /// behind the shape, and no light subpath is connected to any.
+    Surface(Shape),
 }
 
 /// Parameters of `radiancemeter`.
@@ -44,8 +48,8 @@ pub(super) const DISTANT: Table = table! {
     "The mean radiance along parallel rays from outside of the scene, along +z before `to_world`. Its film has one pixel.";
     transform("to_world", "Turns the direction."),
     vector("direction", "", Optional, "In place of `to_world`: where the rays go."),
-    vector("target", "m", Said("all of the scene"), "A point that one ray goes through, or a rectangle or disk that rays cover evenly."),
-    nested("shape", Optional, "The `target`: a rectangle or disk. It is not part of the scene.");
+    vector("target", "m", Said("all of the scene"), "A point, which one ray goes through, or a shape, which rays cover evenly by area."),
+    nested("shape", Optional, "The `target`. It is not part of the scene.");
     ALL
 };
 
@@ -95,14 +99,14 @@ impl Meter {
             Extent::Rectangle => (middle - x - y, [2.0 * x, 2.0 * y]),
             Extent::Disc => (middle, axes),
             // Any that can be inverted: the ray starts at the corner.
-            Extent::Ray => (middle, direction.any_orthonormal_pair().into()),
+            Extent::Ray | Extent::Surface(_) => (middle, direction.any_orthonormal_pair().into()),
         };
         Self { name, extent, parallel: Orthographic::endless(corner, steps, direction) }
     }
 
     /// True if light subpaths can be connected to it.
     pub fn is_connectible(&self) -> bool {
-        self.extent != Extent::Ray
+        matches!(self.extent, Extent::Rectangle | Extent::Disc)
     }
 
     /// Some point that a ray starts at.
@@ -112,11 +116,16 @@ impl Meter {
 
     /// The ray through a film position in [0, 1).
     pub fn ray(&self, film: Vec2) -> SensorRay {
-        let start = self.parallel.ray(match self.extent {
+        let mut start = self.parallel.ray(match self.extent {
             Extent::Rectangle => film,
             Extent::Disc => warp::to_disk(film),
-            Extent::Ray => Vec2::ZERO,
+            Extent::Ray | Extent::Surface(_) => Vec2::ZERO,
         });
+        if let Extent::Surface(shape) = &self.extent {
+            let point = shape.sample_area(&mut Stream::of(film)).position;
+            start.position += point;
+            start.ray.origin += point;
+        }
         SensorRay { pdf: self.pdf(start.pdf), ..start }
     }
 
@@ -126,14 +135,14 @@ impl Meter {
         let film = match self.extent {
             Extent::Rectangle => seen.film,
             Extent::Disc if seen.film.length_squared() <= 1.0 => warp::from_disk(seen.film),
-            Extent::Disc | Extent::Ray => return None,
+            Extent::Disc | Extent::Ray | Extent::Surface(_) => return None,
         };
         Some(Projection { film, pdf: self.pdf(seen.pdf), ..seen })
     }
 
     /// Pixels per area, which are `pdf` for the parallelogram of the steps.
     fn pdf(&self, pdf: f32) -> f32 {
-        if self.extent == Extent::Disc { pdf * FRAC_1_PI } else { pdf }
+        if matches!(self.extent, Extent::Disc) { pdf * FRAC_1_PI } else { pdf }
     }
 }
 
@@ -158,28 +167,35 @@ pub(super) fn target(params: &Params<'_>) -> Result<Option<DVec3>> {
     }
 }
 
-/// Middle and half axes of a flat `target`, and what lies between them.
+/// Middle and half axes of a flat `target`, and what lies between them; those of other shapes are 0.
 fn of_shape(
     target: &Child<'_>,
     params: &Params<'_>,
     direction: DVec3,
     site: &Site<'_>,
 ) -> Result<([DVec3; 3], Extent)> {
+    if !shape::ROWS.has(target.object) {
+        let (found, remedy) =
+            (format!("a {}", target.object.plugin), "use one of the shapes in it, or a point");
+        return Err(Error::new(target.location, "a target that is one shape", found, remedy));
+    }
+    let (given, build) = shape::ROWS.read(target.object, params.library)?;
+    let to_scene = DMat4::from_translation(-site.recentre);
+    // What else one of the scene has is read there.
+    let (shape, place) = match site.places.get(&target.object.location) {
+        Some(index) => (site.shapes[*index].clone(), to_scene * given.transform("to_world")?),
+        None => {
+            let shape = build(&given, to_scene)?;
+            let place = to_scene * given.transform("to_world")?;
+            given.finish()?;
+            (shape, place)
+        }
+    };
     let extent = match target.object.plugin.as_str() {
         "rectangle" => Extent::Rectangle,
         "disk" => Extent::Disc,
-        other => {
-            let remedy = "use a rectangle or a disk in its place, or a point";
-            return Err(Error::new(target.location, "a target that is flat", format!("a {other}"), remedy));
-        }
+        _ => return Ok(([DVec3::ZERO; 3], Extent::Surface(shape))),
     };
-    let (shape, _) = shape::ROWS.read(target.object, params.library)?;
-    let place = DMat4::from_translation(-site.recentre) * shape.transform("to_world")?;
-    // One of the scene is read there.
-    if !site.places.contains_key(&target.object.location) {
-        shape.boolean("flip_normals")?;
-        shape.finish()?;
-    }
     let [x, y] = [DVec3::X, DVec3::Y].map(|axis| place.transform_vector3(axis));
     if x.cross(y).normalize().dot(direction).abs() < EDGE_ON {
         let remedy = "turn it towards the rays";

@@ -181,11 +181,12 @@ impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
         let (estimator, direction) = (self.estimator, departure.ray.direction);
         let medium = &estimator.scene.media[between.medium.0 as usize];
         let properties = medium.properties_at::<P>(0, position);
+        let area = medium.area::<P>(position, direction);
         let inv_pdf = distance * distance / (departure.pdf_fwd * pdf);
-        if properties.sigma_t.max_element() <= 0.0 || !(inv_pdf > 0.0 && inv_pdf < f32::INFINITY) {
+        if properties.sigma_t.max_element() * area <= 0.0 || !(inv_pdf > 0.0 && inv_pdf < f32::INFINITY) {
             return None;
         }
-        let (one, area) = (P::Channels::splat(1.0), medium.area::<P>(direction));
+        let one = P::Channels::splat(1.0);
         let forced = estimator.forced_interaction;
         let gain = if forced { forced::gain(estimator, departure.ray) } else { one };
         let subpath = Subpath {

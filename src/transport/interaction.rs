@@ -78,7 +78,7 @@ impl Interaction {
             Self::Medium(position, properties) => {
                 let medium = &scene.media[properties.medium.0 as usize];
                 let phase = medium.phase.pdf_sr_at(*position, Deflection::between(-incoming, outgoing));
-                let pdf_rev = phase * back::<M>(medium, incoming, outgoing);
+                let pdf_rev = phase * back::<M>(medium, *position, incoming, outgoing);
                 Scattering { value: properties.albedo * phase, pdf_fwd: phase, pdf_rev }
             }
             Self::Surface(point) => {
@@ -113,8 +113,8 @@ impl Interaction {
     pub fn cosine<M: MediaProfile>(&self, scene: &Scene, direction: Vec3) -> f32 {
         match self {
             Self::Surface(point) => point.normal.dot(direction).abs(),
-            Self::Medium(_, properties) if M::FLAKES => {
-                scene.media[properties.medium.0 as usize].area::<M>(direction)
+            Self::Medium(position, properties) if M::FLAKES => {
+                scene.media[properties.medium.0 as usize].area::<M>(*position, direction)
             }
             Self::Medium(..) => 1.0,
         }
@@ -124,8 +124,9 @@ impl Interaction {
 /// Density of scattering from unit `outgoing` back to unit `incoming` over the density forwards: for flakes the ratio
 /// of the areas that they show in both directions, else 1.
 #[inline]
-pub(super) fn back<M: MediaProfile>(medium: &Medium, incoming: Vec3, outgoing: Vec3) -> f32 {
-    if M::FLAKES { medium.area::<M>(incoming) / medium.area::<M>(outgoing) } else { 1.0 }
+pub(super) fn back<M: MediaProfile>(medium: &Medium, position: Vec3, incoming: Vec3, outgoing: Vec3) -> f32 {
+    let area = |direction| medium.area::<M>(position, direction);
+    if M::FLAKES { area(incoming) / area(outgoing) } else { 1.0 }
 }
 
 /// The correction of a light subpath's scattering where the shading normal is not the geometric one (Veach

@@ -27,7 +27,7 @@ pub use constant::Constant;
 pub use cosine::Cosine;
 pub use equipotential::Equipotential;
 pub use exponential::Exponential;
-pub use grid::{Grid, sixfold};
+pub use grid::{Grid, Sixfold};
 pub use noise::Noise;
 pub use polynomial::Polynomial;
 pub use product::Product;

@@ -6,6 +6,7 @@
 //! so that it weighs all strategies of one path. All three must agree, and each set of weights must sum to one.
 
 mod cases;
+mod flakes;
 mod guide;
 mod heuristics;
 mod next_event;
@@ -103,6 +104,18 @@ fn flakes() {
     let along = examine::<Everything>("flakes, along", &setup, Options { strategies, ..ALL }, 300);
     assert!(along.equiangular >= 30, "{}", along.equiangular);
     examine_heuristics("flakes by other heuristics", &setup, Options { strategies, ..ALL }, 60);
+}
+
+/// The same where flakes vary.
+#[test]
+fn felt() {
+    examine_all::<Everything>("felt", &build(&[FELT, INSIDE, ROOM, LAMP, BALL]), 300);
+    examine_all::<Everything>("felt in colour", &build(&[CHROMATIC_FELT, INSIDE, ROOM, LAMP, BALL]), 300);
+    examine_all::<Everything>("waves of felt", &build(&[OUTSIDE, WAVES_OF_FELT, GROUND, LAMP, SKY]), 1000);
+    let strategies = Strategies { equiangular: true, ..Strategies::BDPT };
+    let setup = build(&[CHROMATIC_FELT, INSIDE, ROOM, LAMP, BULB, POINT, BALL]);
+    let along = examine::<Everything>("felt, along", &setup, Options { strategies, ..ALL }, 300);
+    assert!(along.equiangular >= 30, "{}", along.equiangular);
 }
 
 /// Equiangular sampling: every kind of emitter, homogeneous, chromatic and varying media, with boundaries before and behind

@@ -4,6 +4,7 @@ use crate::{
     emitter::Kind,
     math::{DVec3, RaySegment, Spectrum, Vec2, Vec3, offset::Lift, vec2, vec3},
     medium::{DistanceMethod, Heterogeneous, MediumIndex, MediumProperties},
+    phase::Phase,
     sampling::Stream,
     scene::{Scene, lights::EmitterPoint},
     shape::{Ray, SurfacePoint},
@@ -104,7 +105,7 @@ impl Node {
     pub(super) fn facing(&self, scene: &Scene, direction: DVec3) -> f64 {
         let medium = &scene.media[self.medium.0 as usize];
         match self.place {
-            Place::Volume(_) => f64::from(medium.area::<Everything>(direction.as_vec3())),
+            Place::Volume(position) => f64::from(medium.area::<Everything>(position, direction.as_vec3())),
             _ => self.cosine(direction),
         }
     }
@@ -254,7 +255,11 @@ impl Way {
         reach: f64,
     ) {
         let medium = &scene.media[medium.0 as usize];
-        let area = medium.area::<Everything>(direction.as_vec3());
+        // Weights see the mean of flakes that vary.
+        let area = match &medium.phase {
+            Phase::Sggx(flakes) => flakes.area(direction.as_vec3()),
+            _ => 1.0,
+        };
         let sigma_t = medium.bound().sigma_t * area;
         self.rounding += ULP * reach * f64::from(sigma_t.max_element());
         if let Some(varying) = medium.heterogeneous() {

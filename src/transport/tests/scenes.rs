@@ -14,19 +14,26 @@ pub(crate) fn build(parts: &[&str]) -> Setup {
     std::fs::write(&file, text).unwrap();
     std::fs::write(folder.path().join("octahedron.obj"), OCTAHEDRON).unwrap();
     std::fs::write(folder.path().join("voxels.vol"), voxels()).unwrap();
-    std::fs::write(folder.path().join("flakes.vol"), flakes()).unwrap();
+    std::fs::write(folder.path().join("flakes.vol"), flakes(&[ASKEW])).unwrap();
+    std::fs::write(folder.path().join("felt.vol"), flakes(&FELT_MATRICES)).unwrap();
     let sky = |x: usize, y: usize| (x as f32 + 0.1, 3.0 - y as f32, if x == 2 { 40.0 } else { 0.5 });
     exr::prelude::write_rgb_file(folder.path().join("sky.exr"), 6, 4, sky).unwrap();
     let description = format::read(&file, &[]).unwrap_or_else(|error| panic!("{error}"));
     scene::build::build(&description, Overrides::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The matrix of flakes that lie askew.
-fn flakes() -> Vec<u8> {
+/// The matrix of flakes that lie askew: xx, yy, zz, xy, xz, yz.
+const ASKEW: [f32; 6] = [0.04, 0.05, 0.9, 0.01, -0.1, 0.12];
+
+/// Those of felt, from one end along x to the other.
+pub(crate) const FELT_MATRICES: [[f32; 6]; 3] = [ASKEW, [1.6, 0.3, 0.1, -0.4, 0.0, 0.05], [0.0; 6]];
+
+/// Matrices in a row along x, in Mitsuba's format.
+fn flakes(matrices: &[[f32; 6]]) -> Vec<u8> {
     let mut bytes = b"VOL\x03".to_vec();
-    [1i32, 1, 1, 1, 6].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
-    let numbers = [0f32, 0.0, 0.0, 1.0, 1.0, 1.0, 0.04, 0.05, 0.9, 0.01, -0.1, 0.12];
-    numbers.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+    [1i32, matrices.len() as i32, 1, 1, 6].iter().for_each(|n| bytes.extend(n.to_le_bytes()));
+    [0f32, 0.0, 0.0, 1.0, 1.0, 1.0].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+    matrices.iter().flatten().for_each(|x| bytes.extend(x.to_le_bytes()));
     bytes
 }
 
@@ -76,6 +83,20 @@ pub(crate) const WAVES_OF_FLAKES: &str = r#""smoke": {"type": "cube", "bsdf": {"
     "interior": {"type": "heterogeneous", "scale": 3, "albedo": 0.9,
     "sigma_t": {"type": "cosine", "constant": 1, "a": {"type": "wave", "amplitude": 0.9, "vector": [3, 5, 1]}},
     "phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "flakes.vol"}}}}"#;
+
+/// Flakes that change from x = -1 to x = 1, in a medium of one colour, in one of three, and in one that varies.
+pub(crate) const FELT: &str = r#""fog": {"type": "homogeneous", "sigma_t": 1.5, "albedo": 0.9,
+    "phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "felt.vol",
+        "to_world": [{"type": "scale", "value": 2}, {"type": "translate", "value": [-1, -1, -1]}]}}}"#;
+pub(crate) const CHROMATIC_FELT: &str = r#""fog": {"type": "homogeneous", "sigma_t": {"type": "rgb", "value": [2, 1.5, 1]}, "albedo": 0.9,
+    "phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "felt.vol",
+        "to_world": [{"type": "scale", "value": 2}, {"type": "translate", "value": [-1, -1, -1]}]}}}"#;
+pub(crate) const WAVES_OF_FELT: &str = r#""smoke": {"type": "cube", "bsdf": {"type": "null"},
+    "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}],
+    "interior": {"type": "heterogeneous", "scale": 3, "albedo": 0.9,
+    "sigma_t": {"type": "cosine", "constant": 1, "a": {"type": "wave", "amplitude": 0.9, "vector": [3, 5, 1]}},
+    "phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "felt.vol",
+        "to_world": [{"type": "scale", "value": 2}, {"type": "translate", "value": [-1, -1, -1]}]}}}}"#;
 
 /// Smoke of a medium that has a name.
 pub(crate) const HAZE: &str = r#""haze": {"type": "homogeneous", "sigma_t": 1.2, "albedo": 0.95,

@@ -112,7 +112,7 @@ pub(super) fn collide<P: Profile>(
     let (position, flight) = (vertex.position(), -vertex.subpath.incoming);
     let direction = medium.phase.sample_at(position, flight, stream);
     let pdf = medium.phase.pdf_sr_at(position, Deflection::between(flight, direction)) * survival;
-    let pdf_rev = pdf * back::<P>(medium, vertex.subpath.incoming, direction);
+    let pdf_rev = pdf * back::<P>(medium, position, vertex.subpath.incoming, direction);
     let weight = properties.albedo / survival;
     ScatterSample { direction, weight, pdf_fwd: pdf, pdf_rev, dirac: false }
 }

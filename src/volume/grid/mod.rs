@@ -11,6 +11,7 @@ mod checks;
 mod convert;
 mod file;
 mod lattice;
+mod sixfold;
 #[cfg(test)]
 mod tests;
 mod vol;
@@ -20,7 +21,7 @@ mod wrap;
 
 use super::{Coarse, Place, VolumeModel};
 use crate::{
-    description::{Library, Object, Params, Table, table},
+    description::{Library, Params, Table, table},
     error::{Error, Result},
     math::{
         Affine3A, Channels, DAffine3, DVec3, RaySegment, Spectrum, Vec3, axes,
@@ -46,6 +47,7 @@ pub use crate::math::Wrap;
 pub use catalogue::{Catalogue, Contents, Held, Velocities};
 pub use file::{Source, Values, is_volume, to_vol};
 pub use lattice::Filter;
+pub use sixfold::Sixfold;
 
 /// Where an optical depth, summed along a segment, reaches a given value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -164,27 +166,6 @@ pub const VELOCITY: &str = "velocity_grid";
 fn velocity<'a>(params: &Params<'a>) -> Result<Option<(&'a str, f64)>> {
     let (names, scale) = (params.optional_string(VELOCITY)?, params.float("velocity_scale")?);
     Ok(names.filter(|names| !names.trim().is_empty()).map(|names| (names, scale)))
-}
-
-/// The six numbers that `object`, a `gridvolume` of six channels, has everywhere: wherever it lies, and beyond it, as in
-/// Mitsuba.
-pub fn sixfold(object: &Object, library: &Library, place: &Place) -> Result<[f32; 6]> {
-    let complain = |expected, found: &str, remedy| Err(Error::new(&object.location, expected, found, remedy));
-    if object.plugin != "gridvolume" {
-        let found = format!("\"{}\"", object.plugin);
-        return complain("a gridvolume of six channels", &found, "use a gridvolume, as Mitsuba does");
-    }
-    let params = Params::new(object, library, &Grid::TABLE);
-    let path = Given::read(&params, place)?.path;
-    params.finish()?;
-    match vol::sixfold(&path)?.as_slice() {
-        [first, others @ ..] if others.iter().all(|other| other == first) => Ok(*first),
-        _ => complain(
-            "a grid whose six numbers are the same in all voxels",
-            "one whose numbers vary",
-            "save one voxel; for flakes that vary, overlap several media of one matrix each",
-        ),
-    }
 }
 
 impl Grid {

@@ -52,18 +52,26 @@ fn open(path: &Path, channels: &[usize]) -> Result<(Header, BufReader<File>, u64
     Ok((Header::read(path, &mut file, length, channels)?, file, length))
 }
 
-/// All voxels of a file of six channels.
-pub(super) fn sixfold(path: &Path) -> Result<Vec<[f32; 6]>> {
-    let (_, mut file, length) = open(path, &[6])?;
-    numbers(path, &mut file, length, |voxel| voxel)
+/// A file of six channels.
+pub(super) struct Sixfold {
+    pub size: [usize; 3],
+    /// All voxels, x fastest.
+    pub voxels: Vec<[f32; 6]>,
+    /// From the unit cube to where the file says that they lie.
+    pub to_file: DAffine3,
+}
+
+/// Reads a whole file of six channels.
+pub(super) fn sixfold(path: &Path) -> Result<Sixfold> {
+    let (header, mut file, length) = open(path, &[6])?;
+    let voxels = numbers(path, &mut file, length, |voxel| voxel)?;
+    Ok(Sixfold { size: header.size, voxels, to_file: header.to_file() })
 }
 
 /// Reads a whole file.
 pub(super) fn read(path: &Path) -> Result<Source> {
     let (header, mut file, length) = open(path, &[1, 3])?;
-    let [low, high] = header.bounds;
-    let to_file = DAffine3 { matrix3: DMat3::from_diagonal(high - low), translation: low };
-    let size = header.size;
+    let (size, to_file) = (header.size, header.to_file());
     let values = match header.channels {
         1 => Values::Grey(Box::new(Voxels { size, values: numbers(path, &mut file, length, |[x]| x)? })),
         _ => {
@@ -132,6 +140,12 @@ fn box_of(path: &Path, to_file: DAffine3) -> Result<[DVec3; 2]> {
 }
 
 impl Header {
+    /// From the unit cube to the box that the file names.
+    fn to_file(&self) -> DAffine3 {
+        let [low, high] = self.bounds;
+        DAffine3 { matrix3: DMat3::from_diagonal(high - low), translation: low }
+    }
+
     fn bytes(&self) -> Vec<u8> {
         let integers = [1, self.size[0], self.size[1], self.size[2], self.channels].map(|n| n as i32);
         let corners = self.bounds.map(|corner| corner.as_vec3().to_array());
