@@ -1,4 +1,6 @@
-//! A block: a fixed set of pixels scattered over the image, rendered together with a light cache of their own.
+//! A block: a set of pixels, rendered together with a light cache of their own. They are scattered over the image. If no
+//! light subpaths are cached, those of all passes but the first are neighbours: their rays meet the same parts of the scene,
+//! which are then in the processor's caches.
 
 use crate::{
     film::{Film, sharing::Place},
@@ -25,6 +27,8 @@ pub struct Blocks {
     sampler: Sampler,
     /// The inverse of `stride` modulo `pixels`, where every pixel has a light subpath for itself.
     inverse: Option<usize>,
+    /// Distance between one block of neighbours and the next, in blocks; none where all blocks are scattered.
+    block_stride: Option<usize>,
 }
 
 /// How a camera subpath starts.
@@ -43,6 +47,28 @@ pub struct CameraStart {
     pub walk: usize,
 }
 
+/// How an image is divided into blocks of so many pixels.
+#[derive(Clone, Copy, Debug)]
+pub enum Division {
+    /// To be rendered.
+    Image(usize),
+    /// A few blocks of which are to stand for the image.
+    Sample(usize),
+}
+
+impl Division {
+    /// Pixels of a block.
+    pub fn size(self) -> usize {
+        let (Self::Image(size) | Self::Sample(size)) = self;
+        size
+    }
+}
+
+/// Number of blocks of an image of so many `pixels`.
+pub fn count_of(pixels: usize) -> usize {
+    pixels.div_ceil(PIXELS_PER_BLOCK).max(1)
+}
+
 /// Least number of blocks with so many camera `subpaths`.
 pub fn blocks_for(pixels: usize, subpaths: usize) -> usize {
     (subpaths * pixels.div_ceil(PIXELS_PER_BLOCK)).div_ceil(pixels.max(1))
@@ -58,12 +84,17 @@ impl Blocks {
     /// The same with blocks of so many pixels.
     pub fn of_size(size: usize, pixels: usize, heroes: usize, sampler: Sampler, light_walks: f32) -> Self {
         let count = pixels.div_ceil(size).max(1);
-        let golden = (pixels as f64 * 0.618_033_988_75) as usize;
-        let stride = (golden.max(1)..).find(|s| gcd(*s, pixels) == 1).unwrap_or(1);
         let heroes = heroes as u64;
         let walks = (pixels.div_ceil(count) as f64 * f64::from(light_walks)).ceil() as u64;
         let walks_per_block = walks.div_ceil(heroes) * heroes;
-        Self { pixels, count, stride, walks_per_block, heroes, sampler, inverse: None }
+        let (stride, inverse, block_stride) = (golden_stride(pixels), None, None);
+        Self { pixels, count, stride, walks_per_block, heroes, sampler, inverse, block_stride }
+    }
+
+    /// The same with neighbours in blocks of all passes but the first, which is shown before it is whole; for estimators that
+    /// need no light subpaths.
+    pub fn of_neighbours(self) -> Self {
+        Self { block_stride: Some(golden_stride(self.count)), ..self }
     }
 
     /// The same with one light subpath per pixel, which belongs to it alone. Both have the same hero channel, and the
@@ -87,9 +118,11 @@ impl Blocks {
         self.walks_per_block * self.count as u64
     }
 
-    /// The pixels of `block`.
-    pub fn pixels(&self, block: usize) -> impl Iterator<Item = usize> + '_ {
-        self.places(block).map(|place| self.pixel_at(place))
+    /// The pixels of `block` in `pass`.
+    pub fn pixels(&self, pass: usize, block: usize) -> impl Iterator<Item = usize> + '_ {
+        let neighbours = self.block_stride.filter(|_| pass > 0);
+        let places = self.places(neighbours.map_or(block, |stride| block * stride % self.count));
+        places.map(move |place| if neighbours.is_some() { place } else { self.pixel_at(place) })
     }
 
     /// Places of the pixels of `block` in the order of all pixels.
@@ -209,6 +242,12 @@ fn inverse(a: usize, n: usize) -> usize {
     before.1.rem_euclid(n.max(1) as i64) as usize
 }
 
+/// About the golden section of `n`, coprime to it.
+fn golden_stride(n: usize) -> usize {
+    let golden = (n as f64 * 0.618_033_988_75) as usize;
+    (golden.max(1)..).find(|stride| gcd(*stride, n) == 1).unwrap_or(1)
+}
+
 fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }
@@ -220,10 +259,13 @@ mod tests {
     #[test]
     fn blocks_hold_every_pixel_once() {
         for pixels in [1, 2, 7, 1024, 1025, 48 * 48, 640 * 480] {
-            let blocks = Blocks::new(pixels, 1, Sampler::Independent, 1.0);
-            let mut seen = vec![0; pixels];
-            (0..blocks.count()).flat_map(|b| blocks.pixels(b)).for_each(|p| seen[p] += 1);
-            assert!(seen.iter().all(|n| *n == 1), "{pixels}");
+            let of = || Blocks::new(pixels, 1, Sampler::Independent, 0.0);
+            for (blocks, pass) in [(of(), 0), (of(), 1), (of().of_neighbours(), 0), (of().of_neighbours(), 1)]
+            {
+                let mut seen = vec![0; pixels];
+                (0..blocks.count()).flat_map(|b| blocks.pixels(pass, b)).for_each(|p| seen[p] += 1);
+                assert!(seen.iter().all(|n| *n == 1), "{pixels}, pass {pass}");
+            }
             assert_eq!(Blocks::new(pixels, 3, Sampler::Sobol, 0.25).walks_per_block() % 3, 0);
         }
     }
@@ -233,10 +275,10 @@ mod tests {
         for pixels in [1, 2, 3, 7, 1023, 1024, 1025, 48 * 48, 160 * 120] {
             let blocks = Blocks::new(pixels, 3, Sampler::Sobol, 1.0).paired();
             for block in 0..blocks.count() {
-                let walks: Vec<usize> = blocks.pixels(block).map(|pixel| blocks.walk_of(pixel)).collect();
+                let walks: Vec<usize> = blocks.pixels(0, block).map(|pixel| blocks.walk_of(pixel)).collect();
                 assert!(walks.iter().copied().eq(0..walks.len()), "{pixels}: {walks:?}");
                 assert!(walks.len() as u64 <= blocks.walks_per_block());
-                for (pixel, walk) in blocks.pixels(block).zip(blocks.light_paths(block)) {
+                for (pixel, walk) in blocks.pixels(0, block).zip(blocks.light_paths(block)) {
                     assert_eq!(blocks.hero(5, 2, walk), blocks.camera_stream(5, 2, pixel).1);
                 }
             }

@@ -4,7 +4,7 @@
 
 use super::{
     Settings,
-    blocks::{Blocks, CameraStart},
+    blocks::{Blocks, CameraStart, Division},
     observe::BlockObserver,
     pass::Outcome,
     ready::Ready,
@@ -98,7 +98,7 @@ pub fn choose<'a>(
         (Heuristic::Balance, ProfileName::ChromaticBounded) => Ready::<ChromaticBounded>::prepare,
         (Heuristic::Balance, ProfileName::Everything) => Ready::<Everything>::prepare,
     };
-    prepare(scene, film, settings, learnt, per_block)
+    prepare(scene, film, settings, learnt, Division::Image(per_block))
 }
 
 /// The same, with the share of each kind of strategy in the weights of contributions.
@@ -109,5 +109,5 @@ pub fn by_kind<'a>(
     learnt: Learnt,
     per_block: usize,
 ) -> Box<dyn Compiled + 'a> {
-    Ready::<ByKind>::prepare(scene, film, settings, learnt, per_block)
+    Ready::<ByKind>::prepare(scene, film, settings, learnt, Division::Sample(per_block))
 }

@@ -1,6 +1,6 @@
 //! A pass over the image, one sample of every pixel, block by block.
 
-use super::{blocks::Blocks, faults::Fault, fill};
+use super::{faults::Fault, fill};
 use crate::{film::sharing::Sharing, math::Spectrum};
 
 /// What a block adds to its pass.
@@ -34,17 +34,23 @@ impl Outcome {
 pub struct Pass {
     camera: Vec<Spectrum>,
     light: Vec<Spectrum>,
+    /// Pixels, and pixels of layers, that camera subpaths have been traced through.
+    known: Vec<bool>,
 }
 
 impl Pass {
     /// No block of it is done.
     pub fn new(pixels: usize) -> Self {
-        Self { camera: vec![Spectrum::ZERO; pixels], light: vec![Spectrum::ZERO; pixels] }
+        let nothing = || vec![Spectrum::ZERO; pixels];
+        Self { camera: nothing(), light: nothing(), known: vec![false; pixels] }
     }
 
     /// Adds a block.
     pub fn add(&mut self, outcome: &Outcome) {
-        outcome.camera.iter().for_each(|(pixel, value)| self.camera[*pixel as usize] += *value);
+        for (pixel, value) in &outcome.camera {
+            self.camera[*pixel as usize] += *value;
+            self.known[*pixel as usize] = true;
+        }
         outcome.light.iter().for_each(|(pixel, value)| self.light[*pixel as usize] += *value);
     }
 
@@ -64,15 +70,21 @@ impl Pass {
         (&self.camera, &self.light)
     }
 
-    /// A pass of these parts.
-    pub fn of(camera: Vec<Spectrum>, light: Vec<Spectrum>) -> Self {
-        Self { camera, light }
+    /// Which pixels, and pixels of layers, camera subpaths have been traced through.
+    pub fn known(&self) -> &[bool] {
+        &self.known
+    }
+
+    /// A pass of these parts, equally long.
+    pub fn of(camera: Vec<Spectrum>, light: Vec<Spectrum>, known: Vec<bool>) -> Self {
+        Self { camera, light, known }
     }
 
     /// No block of it is done.
     pub fn clear(&mut self) {
         self.camera.fill(Spectrum::ZERO);
         self.light.fill(Spectrum::ZERO);
+        self.known.fill(false);
     }
 
     /// The estimate of `pixel`, whose block has been added. The added blocks are the fraction `done` of all; their
@@ -81,17 +93,14 @@ impl Pass {
         self.camera[pixel] + self.light[pixel] / done
     }
 
-    /// A plane (the image or a layer) from the first `done` of `blocks`; pixels of the others take the mean of those
-    /// around them.
-    pub fn pixels(&self, blocks: &Blocks, done: usize, width: usize, plane: usize) -> Vec<Spectrum> {
-        let first = plane * blocks.pixel_count();
-        let mut known = vec![false; blocks.pixel_count()];
-        let mut pixels = vec![Spectrum::ZERO; known.len()];
-        for pixel in (0..done).flat_map(|block| blocks.pixels(block)) {
-            pixels[pixel] = self.estimate(first + pixel, done as f32 / blocks.count() as f32);
-            known[pixel] = true;
-        }
-        fill::fill(&mut pixels, &known, width);
+    /// A plane (the image or a layer) of so many pixels, of `width` across, from the fraction `done` of all blocks; pixels
+    /// of the others take the mean of those around them.
+    pub fn plane(&self, plane: usize, count: usize, width: usize, done: f32) -> Vec<Spectrum> {
+        let (first, known) = (plane * count, &self.known[..count]);
+        let value =
+            |pixel: usize| if known[pixel] { self.estimate(first + pixel, done) } else { Spectrum::ZERO };
+        let mut pixels: Vec<_> = (0..count).map(value).collect();
+        fill::fill(&mut pixels, known, width);
         pixels
     }
 }

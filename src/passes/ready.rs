@@ -2,7 +2,7 @@
 
 use super::{
     Settings,
-    blocks::{Blocks, CameraStart},
+    blocks::{Blocks, CameraStart, Division},
     compiled::Compiled,
     faults::{Cause, Fault, guarded},
     observe::BlockObserver,
@@ -44,24 +44,30 @@ struct Sight {
 }
 
 impl<'a, P: Profile> Ready<'a, P> {
-    /// By what was `learnt`, with blocks of so many pixels.
+    /// By what was `learnt`, with blocks of this `division`.
     pub(super) fn prepare(
         scene: &'a Scene,
         film: &'a Film,
         settings: &Settings,
         learnt: Learnt,
-        per_block: usize,
+        division: Division,
     ) -> Box<dyn Compiled + 'a> {
         let Options { effort, connections, .. } = settings.options;
         let (pixels, heroes, sampler) = (film.len(), P::Channels::COUNT, settings.sampler);
         let blocks = match connections {
-            Connections::Cached => Blocks::of_size(per_block, pixels, heroes, sampler, effort.light_walks),
+            Connections::Cached => {
+                Blocks::of_size(division.size(), pixels, heroes, sampler, effort.light_walks)
+            }
             // The light subpath of a pixel does not depend on how the image is rendered.
             Connections::All => Blocks::new(pixels, heroes, sampler, 1.0).paired(),
         };
         let (per_pass, per_block) = (blocks.walks_per_pass(), blocks.walks_per_block());
         let Settings { options, seed, film_samples, .. } = *settings;
         let estimator = Estimator::<P>::new(scene, options, learnt, seed, per_pass, per_block);
+        let blocks = match division {
+            Division::Image(_) if !estimator.needs_light_walks() => blocks.of_neighbours(),
+            _ => blocks,
+        };
         Box::new(Self { estimator, blocks, scene, film, film_samples, seed })
     }
 
@@ -168,7 +174,7 @@ impl<P: Profile> Compiled for Ready<'_, P> {
         guarded(pass, |failed, at| {
             let is_wanted = |pixel: &usize| wants(*pixel) && !failed.contains(&(*pixel as u32));
             let place = self.place(pass);
-            let mut sights = self.blocks.pixels(block).filter(is_wanted).map(|pixel| {
+            let mut sights = self.blocks.pixels(pass, block).filter(is_wanted).map(|pixel| {
                 at.set(Some(pixel as u32));
                 Sight { pixel, block, start: self.start(pass, pixel, place) }
             });
@@ -194,7 +200,7 @@ impl<P: Profile> Compiled for Ready<'_, P> {
         }
         observer.lit();
         let place = self.place(pass);
-        for pixel in self.blocks.pixels(block).filter(|pixel| wants(*pixel)) {
+        for pixel in self.blocks.pixels(pass, block).filter(|pixel| wants(*pixel)) {
             let start = self.start(pass, pixel, place);
             let camera = observer.camera(pixel, &start);
             start.trace(&self.estimator, &cache, camera);

@@ -213,7 +213,7 @@ fn accumulate(
                 None => instrument.render(pass, block, &|_| true),
                 Some(preview) => {
                     let compiled = &*instrument.compiled;
-                    preview.show(compiled, pass, compiled.blocks().pixels(block))
+                    preview.show(compiled, pass, compiled.blocks().pixels(pass, block))
                 }
             };
             let done = instrument.work_in_turn(tasks.clone(), pass, is_over, render, |first, outcomes| {

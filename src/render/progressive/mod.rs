@@ -249,7 +249,7 @@ impl<'a, 's> Painter<'a, 's> {
         }
         if batch.pixels.is_empty() {
             let blocks: &Blocks = self.instrument.compiled.blocks();
-            let all = (0..blocks.count()).flat_map(|block| blocks.pixels(block));
+            let all = (0..blocks.count()).flat_map(|block| blocks.pixels(0, block));
             all.filter(|pixel| self.mesh.at(*pixel).is_none())
                 .take(size)
                 .for_each(|pixel| batch.push(pixel, None));

@@ -5,12 +5,11 @@ use crate::{
     film::{Film, noise::Noise},
     math::{DVec3, Spectrum},
     passes::{
-        blocks::Blocks,
+        blocks::count_of,
         faults::Faults,
         pass::{Outcome, Pass},
     },
     render::image::{Image, Precision, Progress, Reached},
-    sampling::Sampler,
 };
 use std::time::Duration;
 
@@ -88,9 +87,9 @@ impl Halves {
         (self.width, self.active.len() / self.width)
     }
 
-    /// Which pixels a block has does not depend on how it is rendered.
-    pub(in crate::render) fn division(&self) -> Blocks {
-        Blocks::new(self.active.len(), 1, Sampler::Independent, 1.0)
+    /// The fraction of the blocks that have one more pass.
+    fn unfinished(&self) -> f64 {
+        self.blocks as f64 / count_of(self.active.len()) as f64
     }
 
     /// Adds the next of `count` blocks of a pass.
@@ -131,15 +130,14 @@ impl Halves {
 
     pub(in crate::render) fn progress(&self, elapsed: Duration, is_last: bool) -> Progress {
         let (passes, pixels) = (self.passes(), self.active.len() as f64);
-        let done = self.blocks as f64 / self.division().count() as f64;
-        let samples = ((passes as f64 + done) * pixels) as u64;
+        let samples = ((passes as f64 + self.unfinished()) * pixels) as u64;
         Progress { samples, passes, elapsed, noise: None, within: Some(self.share()), is_last }
     }
 
     /// The mean of the halves, or the unfinished first pass, in a plane: 0 is the image, those of layers follow.
     pub(in crate::render) fn plane(&self, plane: usize) -> Vec<Spectrum> {
         if self.passes() == 0 {
-            return self.pass.pixels(&self.division(), self.blocks, self.width, plane);
+            return self.pass.plane(plane, self.active.len(), self.width, self.unfinished() as f32);
         }
         let halves: Vec<&Half> = self.halves.iter().filter(|half| half.passes > 0).collect();
         let value = |pixel| halves.iter().map(|half| half.value(pixel)).sum::<DVec3>() / halves.len() as f64;
@@ -160,7 +158,7 @@ impl Halves {
     /// The image so far, without alpha and layers.
     pub(in crate::render) fn image(&self) -> Image {
         let samples = match self.passes() {
-            0 => self.blocks as f64 / self.division().count() as f64,
+            0 => self.unfinished(),
             _ => self.samples.iter().map(|n| f64::from(*n)).sum::<f64>() / self.samples.len() as f64,
         };
         Image {
@@ -188,19 +186,22 @@ mod tests {
     use super::*;
     use crate::{
         film::{Window, filter::Filter, format::Format},
+        passes::blocks::Blocks,
         render::sums::{AnySums, file},
+        sampling::Sampler,
     };
 
     /// A film of four blocks, after some of them and a check after 32 passes; the lower half of it is `noisy`.
     fn halves(blocks: usize, noisy: bool) -> Halves {
         let film = Film::new(Window::whole(64, 64), Filter::Box, false, Format::default());
         let mut halves = Halves::new(&film, Precision { error: 0.5, confidence: 0.9 }, 1);
+        let division = Blocks::new(film.len(), 1, Sampler::Independent, 0.0).of_neighbours();
         for block in 0..blocks {
             let pass = block / 4;
             let rare = if pass % 16 == 0 { 50.0 } else { 0.0 };
             let value = |pixel| if noisy && pixel >= 2048 { rare } else { (1 + pass % 2) as f32 };
             let camera =
-                halves.division().pixels(block % 4).map(|pixel| (pixel, value(pixel))).collect::<Vec<_>>();
+                division.pixels(pass, block % 4).map(|pixel| (pixel, value(pixel))).collect::<Vec<_>>();
             halves.add(&Outcome::of(camera.into_iter(), [(pass % 5, 0.1)].into_iter()), 4);
             if block + 1 == 32 * 4 {
                 halves.look();

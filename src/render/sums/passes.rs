@@ -6,12 +6,11 @@ use crate::{
     film::{Film, accumulator::Accumulator, noise::Noise, sharing::Sharing},
     math::Spectrum,
     passes::{
-        blocks::Blocks,
+        blocks::count_of,
         faults::Faults,
         pass::{Outcome, Pass},
     },
     render::image::{Image, Progress},
-    sampling::Sampler,
 };
 use std::time::Duration;
 
@@ -78,7 +77,7 @@ impl Sums {
 
     /// The fraction of the pixels that have one more.
     pub fn unfinished(&self) -> f64 {
-        self.blocks as f64 / self.division().count() as f64
+        self.blocks as f64 / count_of(self.accumulator.len()) as f64
     }
 
     /// Pixels across and down.
@@ -154,11 +153,6 @@ impl Sums {
         self.note_noise(seen);
     }
 
-    /// Which pixels a block has does not depend on how it is rendered.
-    pub(in crate::render) fn division(&self) -> Blocks {
-        Blocks::new(self.accumulator.len(), 1, Sampler::Independent, 1.0)
-    }
-
     /// The mean. In its finished blocks, the unfinished pass is weighted by its finished fraction: the fewer the
     /// blocks, the less certain the light that it found. No pixel is biased. Pixels without any sample take the mean of
     /// those around them. Where pixels share samples, a pass counts once it is whole; but before the first one is, each
@@ -169,19 +163,17 @@ impl Sums {
 
     /// The same of a plane: 0 is the image, those of layers follow.
     pub(in crate::render) fn plane(&self, plane: usize) -> Vec<Spectrum> {
-        let first = plane * self.accumulator.len();
-        let blocks = self.division();
+        let (count, done) = (self.accumulator.len(), self.unfinished() as f32);
         if self.accumulator.passes() == 0 {
-            return self.pass.pixels(&blocks, self.blocks, self.width, plane);
+            return self.pass.plane(plane, count, self.width, done);
         }
         let (mut pixels, passes) = (self.accumulator.mean_of(plane), self.accumulator.passes() as f32);
         if self.is_shared {
             return pixels;
         }
-        let done = self.unfinished() as f32;
-        for pixel in (0..self.blocks).flat_map(|block| blocks.pixels(block)) {
-            let both = pixels[pixel] * passes + self.pass.estimate(first + pixel, done) * done;
-            pixels[pixel] = both / (passes + done);
+        for (pixel, mean) in pixels.iter_mut().enumerate().filter(|(pixel, _)| self.pass.known()[*pixel]) {
+            let both = *mean * passes + self.pass.estimate(plane * count + pixel, done) * done;
+            *mean = both / (passes + done);
         }
         pixels
     }
@@ -205,27 +197,34 @@ impl Sums {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::{Window, filter::Filter, format::Format};
+    use crate::{
+        film::{Window, filter::Filter, format::Format},
+        passes::blocks::Blocks,
+        sampling::Sampler,
+    };
 
     /// A film of four blocks.
     fn film() -> Film {
         Film::new(Window::whole(64, 64), Filter::Box, false, Format::default())
     }
 
+    fn blocks() -> Blocks {
+        Blocks::new(64 * 64, 1, Sampler::Independent, 0.0).of_neighbours()
+    }
+
     /// `block` with 1 for every pixel of its own, and half of it for every pixel by light.
-    fn outcome(blocks: &Blocks, block: usize, pixels: usize) -> Outcome {
-        Outcome::of(blocks.pixels(block).map(|pixel| (pixel, 1.0)), (0..pixels).map(|pixel| (pixel, 0.5)))
+    fn outcome(pass: u64, block: usize) -> Outcome {
+        let own = blocks().pixels(pass as usize, block).map(|pixel| (pixel, 1.0)).collect::<Vec<_>>();
+        Outcome::of(own.into_iter(), (0..64 * 64).map(|pixel| (pixel, 0.5)))
     }
 
     #[test]
     fn a_pass_may_end_after_any_block() {
-        let (film, mut sums) = (film(), Sums::new(&film(), false, 0));
-        let blocks = sums.division();
-        let count = blocks.count();
+        let (count, mut sums) = (blocks().count(), Sums::new(&film(), false, 0));
         for task in 0..3 * count {
             let sample = (task / count) as u64;
             sums.start(sample);
-            sums.add(sample, &outcome(&blocks, task % count, film.len()), count, None);
+            sums.add(sample, &outcome(sample, task % count), count, None);
             let pixels = sums.pixels();
             // Whatever is done: 1 by its own samples, and by light a half for each of the blocks.
             let expected = 1.0 + 0.5 * count as f32;
@@ -244,11 +243,10 @@ mod tests {
         let path = folder.path().join("a.sums");
         for (products, tasks, layers) in [(false, 1, 0), (true, 4, 2), (true, 7, 1)] {
             let mut sums = Sums::new(&film, products, layers);
-            let blocks = sums.division();
             for task in 0..tasks {
                 let sample = (task / 4) as u64;
                 sums.start(sample);
-                sums.add(sample, &outcome(&blocks, task % 4, film.len()), 4, None);
+                sums.add(sample, &outcome(sample, task % 4), 4, None);
             }
             sums.note_noise(&|_| 0.0);
             sums.elapsed = Duration::from_secs(3);

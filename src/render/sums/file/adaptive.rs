@@ -11,6 +11,7 @@
 //! | `light_means.N` | f64 \[pixels, 3\] | means of light subpaths, once the other half says so of all pixels |
 //! | `samples` | u32 \[pixels\] | samples taken |
 //! | `camera`, `light` | f32 \[pixels, 3\] | what camera and light subpaths of the unfinished pass contributed so far, if there is one |
+//! | `known` | u8 \[pixels\] | 1 where camera subpaths of it have been traced |
 
 use super::{
     Stored,
@@ -18,7 +19,7 @@ use super::{
 };
 use crate::{
     math::DVec3,
-    passes::faults::Faults,
+    passes::{blocks::count_of, faults::Faults},
     render::{
         image::{Image, Precision},
         sums::{Halves, Kept, Picture, half::Half, samples::Samples},
@@ -92,6 +93,7 @@ impl Kept for Halves {
             let content = half.content.iter().map(|content| [u8::from(*content)]);
             Array::row(&format!("content.{index}"), "U8", content)
         }));
+        arrays.push(Array::of_known(&self.pass, self.blocks > 0));
         Stored(state, arrays)
     }
 }
@@ -130,9 +132,9 @@ pub(super) fn halves(state: Value, arrays: &Arrays<'_>) -> Option<Halves> {
     found.samples = arrays.row("samples", u32::from_le_bytes).filter(|samples| samples.len() == pixels)?;
     found.faults = state.faults;
     found.elapsed = Duration::try_from_secs_f64(state.seconds).ok()?;
-    found.blocks = state.blocks;
+    found.blocks = arrays.blocks(state.blocks);
     found.pass = arrays.pass(found.halves[0].camera.len(), found.blocks > 0)?;
-    (found.blocks < found.division().count()).then_some(found)
+    (found.blocks < count_of(pixels)).then_some(found)
 }
 
 fn half(index: usize, state: &State, pixels: usize, arrays: &Arrays<'_>) -> Option<Half> {

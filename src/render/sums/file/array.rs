@@ -16,6 +16,9 @@ pub(super) struct Array {
     pub(super) bytes: Vec<u8>,
 }
 
+/// The array of [`Array::of_known`].
+const KNOWN: &str = "known";
+
 impl Array {
     /// Numbers in a row.
     pub(super) fn row<const N: usize>(
@@ -37,6 +40,12 @@ impl Array {
     pub(super) fn vectors<'a>(name: &str, vectors: impl IntoIterator<Item = &'a DVec3>) -> Self {
         let numbers = vectors.into_iter().flat_map(|vector| vector.to_array());
         Self::row(name, "F64", numbers.map(f64::to_le_bytes)).in_columns(3)
+    }
+
+    /// Which pixels of the unfinished `pass` are known, unless it has not begun.
+    pub(super) fn of_known(pass: &Pass, has_begun: bool) -> Self {
+        let known = if has_begun { pass.known() } else { &[] };
+        Self::row(KNOWN, "U8", known.iter().map(|known| [u8::from(*known)]))
     }
 
     /// The unfinished `pass`, unless it has not begun.
@@ -77,6 +86,12 @@ impl<'a> Arrays<'a> {
         Some(vectors.collect()).filter(|vectors: &Vec<_>| vectors.len() == pixels)
     }
 
+    /// Blocks done of an unfinished pass, of which the file says that they are so many: none where it does not tell which
+    /// pixels are known, as those of version 0.2.0.
+    pub(super) fn blocks(&self, done: usize) -> usize {
+        if self.0.tensor(KNOWN).is_ok() { done } else { 0 }
+    }
+
     /// An unfinished pass over so many `pixels`.
     pub(super) fn pass(&self, pixels: usize, has_begun: bool) -> Option<Pass> {
         if !has_begun {
@@ -87,6 +102,10 @@ impl<'a> Arrays<'a> {
             let spectra = numbers.as_chunks().0.iter().map(|spectrum| Spectrum::from_array(*spectrum));
             Some(spectra.collect()).filter(|spectra: &Vec<_>| spectra.len() == pixels)
         };
-        Some(Pass::of(spectra("camera")?, spectra("light")?))
+        let known: Vec<_> = self.row(KNOWN, u8::from_le_bytes)?.into_iter().map(|known| known != 0).collect();
+        if known.len() != pixels {
+            return None;
+        }
+        Some(Pass::of(spectra("camera")?, spectra("light")?, known))
     }
 }

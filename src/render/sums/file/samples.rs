@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | `windows`, `parts` | i16 \[n\], i64 \[n, 2\] | exact sums over samples, see [`Parts`](crate::math::exact_sums::Parts): of R, G, B and the difference of the halves of each pixel, row by row, of the image and of `layers` that contributions are sorted into; then, where layers need them, of R R, R G, R B, G G, G B, B B |
 //! | `camera`, `light` | f32 \[pixels, 3\] | what camera and light subpaths of the unfinished sample contributed so far, if there is one |
+//! | `known` | u8 \[pixels\] | 1 where camera subpaths of it have been traced |
 
 use super::{
     Stored,
@@ -11,7 +12,7 @@ use super::{
 };
 use crate::{
     film::accumulator::Accumulator,
-    passes::faults::Faults,
+    passes::{blocks::count_of, faults::Faults},
     render::{
         image::Image,
         sums::{Kept, Picture, Sums, samples::Samples},
@@ -74,6 +75,7 @@ impl Kept for Sums {
         let mut arrays =
             vec![Array::row("parts", "I64", parts).in_columns(2), Array::row("windows", "I16", windows)];
         arrays.extend(Array::of_pass(&self.pass, self.blocks > 0));
+        arrays.push(Array::of_known(&self.pass, self.blocks > 0));
         Stored(state, arrays)
     }
 }
@@ -92,7 +94,7 @@ pub(super) fn sums(state: Value, arrays: &Arrays<'_>) -> Option<Sums> {
     let mut sums = Sums::of(accumulator, samples, state.width);
     sums.faults = state.faults;
     sums.elapsed = Duration::try_from_secs_f64(state.seconds).ok()?;
-    (sums.sample, sums.blocks) = state.unfinished;
+    (sums.sample, sums.blocks) = (state.unfinished.0, arrays.blocks(state.unfinished.1));
     sums.pass = arrays.pass(sums.accumulator.len_of_planes(), sums.blocks > 0)?;
-    (sums.blocks < sums.division().count()).then_some(sums)
+    (sums.blocks < count_of(pixels)).then_some(sums)
 }
