@@ -33,6 +33,7 @@ pub const ROWS: Registry<Plugin<BuildMedium>> = Registry::new(
 #[derive(Clone, Debug)]
 pub struct MediumDescription {
     medium: Medium,
+    location: Option<Location>,
     fields: Option<Fields>,
     emission: Option<EmissionDescription>,
 }
@@ -60,7 +61,7 @@ pub fn build(object: &Object, library: &Library, place: &Place) -> Result<Medium
 impl MediumDescription {
     /// Vacuum.
     pub fn vacuum() -> Self {
-        Self { medium: Medium::vacuum(), fields: None, emission: None }
+        Self { medium: Medium::vacuum(), location: None, fields: None, emission: None }
     }
 
     /// True if coefficients vary.
@@ -76,16 +77,18 @@ impl MediumDescription {
 
     /// An error if it surrounds the scene without end although it varies: it would have to be examined to infinity.
     pub fn check_end(&self) -> Result<()> {
-        match &self.fields {
-            Some(fields) if self.extinguishes_without_end() => {
-                let remedy =
-                    "close it by shapes, openings by a \"null\" surface with this medium as its interior";
-                let found = "one that surrounds the whole scene";
-                let expected = "a medium with an end, as its albedo varies";
-                Err(Error::new(&fields.location, expected, found, remedy))
-            }
-            _ => Ok(()),
-        }
+        let what = match &self.fields {
+            _ if !self.extinguishes_without_end() => return Ok(()),
+            Some(_) => "its albedo varies",
+            None => match &self.medium.phase {
+                Phase::Sggx(flakes) if flakes.shares()[0] <= 0.0 => "some of it has no flakes",
+                _ => return Ok(()),
+            },
+        };
+        let remedy = "close it by shapes, openings by a \"null\" surface with this medium as its interior";
+        let found = "one that surrounds the whole scene";
+        let place = self.location.as_ref().map_or(String::new(), ToString::to_string);
+        Err(Error::new(place, format!("a medium with an end, as {what}"), found, remedy))
     }
 
     /// True if nothing arrives through it from infinity.
@@ -173,7 +176,12 @@ fn homogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription> 
         }
     };
     let medium = Medium::homogeneous(properties, phase(params, place)?);
-    Ok(MediumDescription { medium, fields, emission: EmissionDescription::read(params, place)? })
+    Ok(MediumDescription {
+        medium,
+        location: Some(params.location().clone()),
+        fields,
+        emission: EmissionDescription::read(params, place)?,
+    })
 }
 
 const HETEROGENEOUS: Table = table! {
@@ -201,6 +209,7 @@ fn heterogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription
     let medium = Medium::homogeneous(MediumProperties::NOTHING, phase(params, place)?);
     Ok(MediumDescription {
         medium,
+        location: Some(params.location().clone()),
         fields: Some(fields),
         emission: EmissionDescription::read(params, place)?,
     })

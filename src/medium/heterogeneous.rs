@@ -229,7 +229,7 @@ impl Heterogeneous {
 }
 
 /// A ratio of transmittances is evaluated no deeper than this: sampled exponential depths are less.
-const DEEPEST: f32 = 80.0;
+pub(super) const DEEPEST: f32 = 80.0;
 
 /// A bound may lie this far above what it bounds, relative to it: volumes widen theirs by their rounding.
 const ROUNDING: f32 = 1e-6;

@@ -337,7 +337,7 @@ impl Medium {
             },
             Model::Heterogeneous(varying) => varying.unforced(&interval.segment, depth, hero, stream),
             Model::Mixture(mixture) => mixture.unforced::<M>(interval, hero, stream),
-            Model::Flakes(flakes) => flakes.unforced::<M>(interval, depth, hero, stream),
+            Model::Flakes(flakes) => flakes.unforced::<M>(interval, hero, stream),
         }
     }
 

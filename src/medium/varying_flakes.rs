@@ -1,12 +1,15 @@
 //! Flakes that differ from one point to another, in a medium of any kind. Along a ray the area that they show is that of
-//! their mean, times a share between known bounds. Flights are those through flakes that show the greatest area: a
-//! collision counts with the probability that flakes there show it, and the flight goes on where it does not (delta
-//! tracking). Transmittance is that of the mean, corrected by the shares at random points (residual ratio tracking, Novak
-//! et al. 2014). Weights use the mean alone.
+//! their mean, times a share between known bounds. Flights are those through the densest flakes that there may be: a
+//! collision counts with the probability that flakes there show so much, and the flight goes on where it does not (delta
+//! tracking). Transmittance is that of the sparsest, times estimates of what lies between (ratio tracking, Novak et al.
+//! 2014): no estimate exceeds 1. Weights use the mean alone.
 //!
-//! All three are media of flakes that are the same everywhere, whose trackers are free of bias.
+//! All of these are media of flakes that are the same everywhere, whose trackers are free of bias.
 
-use super::{Attenuation, DistanceSample, MediaProfile, Medium, MediumInterval, MediumProperties, Unforced};
+use super::{
+    Attenuation, DistanceSample, MediaProfile, Medium, MediumInterval, MediumProperties, Unforced,
+    heterogeneous::DEEPEST,
+};
 use crate::{
     math::{Channels, RaySegment, Spectrum, Vec3},
     phase::{Phase, Sggx},
@@ -19,22 +22,40 @@ pub(super) struct VaryingFlakes {
     flakes: Sggx,
     /// The mean of all flakes.
     mean: Medium,
-    /// As dense as they may be, in every direction.
+    /// As sparse as they may be, in every direction; none where that is nothing.
+    sparsest: Option<Medium>,
+    /// As dense.
     densest: Medium,
-    /// As dense as they may differ from the mean.
-    deviation: Medium,
-    /// The greatest share of the mean's area, and how far a share may lie from 1.
-    most: f32,
-    spread: f32,
+    /// As dense as the densest are beyond the sparsest.
+    between: Medium,
+    /// Shares of the mean's area that the sparsest and the densest show.
+    shares: [f32; 2],
+    is_grey: bool,
 }
+
+/// Parts of a ray by which collisions are forced.
+const PIECES: usize = 16;
+
+/// The least share of the mean that a part of a ray counts with, however few flakes there are in its middle.
+const LEAST: f32 = 0.05;
+
+/// A flight that has met so many places without flakes is taken for past all of them.
+const MOST_NULLS: u32 = 1 << 20;
 
 impl VaryingFlakes {
     /// What `flakes` make of `medium`, whatever its own are.
     pub(super) fn new(medium: &Medium, flakes: &Sggx) -> Self {
-        let [least, most] = flakes.shares();
-        let spread = (most - 1.0).max(1.0 - least);
+        let shares @ [least, most] = flakes.shares();
         let of = |by| Medium { phase: Phase::Sggx(flakes.mean(by)), ..medium.clone() };
-        Self { flakes: flakes.clone(), mean: of(1.0), densest: of(most), deviation: of(spread), most, spread }
+        Self {
+            flakes: flakes.clone(),
+            mean: of(1.0),
+            sparsest: (least > 0.0).then(|| of(least)),
+            densest: of(most),
+            between: of(most - least),
+            shares,
+            is_grey: !medium.is_chromatic(),
+        }
     }
 
     /// The medium of the mean.
@@ -48,37 +69,44 @@ impl VaryingFlakes {
         self.flakes.area_at(segment.at(t), direction) / self.flakes.area(direction)
     }
 
-    /// Unbiased estimates of what transmittance is over the mean's, per channel; 0 where nothing of it `arrives`.
-    fn corrections<M: MediaProfile>(
+    /// Unbiased estimates of what transmittance is over that of the sparsest, per channel; 0 where nothing of it `arrives`.
+    fn beyond_sparsest<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
         arrives: M::Channels,
         stream: &mut Stream,
     ) -> M::Channels {
-        let mut corrections = [0.0; 3];
-        for (channel, correction) in corrections.iter_mut().enumerate().take(M::Channels::COUNT) {
-            if arrives.hero(channel) != 0.0 {
-                *correction = self.correction::<M>(interval, channel, 1.0, stream);
-            }
+        let mut found = [0.0; 3];
+        for channel in 0..M::Channels::COUNT {
+            found[channel] = match arrives.hero(channel) {
+                0.0 => 0.0,
+                _ if channel > 0 && self.is_grey => found[0],
+                _ => self.beyond_sparsest_of::<M>(interval, channel, 1.0, stream),
+            };
         }
-        M::Channels::from_fn(|channel| corrections[channel])
+        M::Channels::from_fn(|channel| found[channel])
     }
 
     /// The same of one channel, to the power of `sign`, which is 1 or -1.
-    fn correction<M: MediaProfile>(
+    fn beyond_sparsest_of<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
         channel: usize,
         sign: f32,
         stream: &mut Stream,
     ) -> f32 {
-        let whole = interval.whole();
-        let (mut at, mut correction) = (0.0, 1.0);
-        while let Some(t) = next::<M>(&self.deviation, &whole, at, channel, stream) {
-            correction *= 1.0 - sign * (self.share(&whole.segment, t as f32) - 1.0) / self.spread;
+        let (whole, [least, most]) = (interval.whole(), self.shares);
+        let (mut at, mut estimate) = (0.0, 1.0);
+        for _ in 0..MOST_NULLS {
+            let Some(t) = next::<M>(&self.between, &whole, at, channel, stream) else { break };
+            estimate *= 1.0
+                - sign * ((self.share(&whole.segment, t as f32) - least) / (most - least)).clamp(0.0, 1.0);
+            if estimate == 0.0 {
+                break;
+            }
             at = t;
         }
-        correction
+        estimate
     }
 
     /// See [`Medium::properties_at`].
@@ -103,8 +131,12 @@ impl VaryingFlakes {
         interval: &MediumInterval,
         stream: &mut Stream,
     ) -> Option<Attenuation<M::Channels>> {
-        let Attenuation { depth, transmittance } = self.mean.attenuation::<M>(interval, stream)?;
-        let transmittance = transmittance * self.corrections::<M>(interval, transmittance, stream);
+        let sparsest = match &self.sparsest {
+            Some(medium) => medium.attenuation::<M>(interval, stream)?.transmittance,
+            None => M::Channels::splat(1.0),
+        };
+        let transmittance = sparsest * self.beyond_sparsest::<M>(interval, sparsest, stream);
+        let depth = self.mean.optical_depth::<M>(interval);
         (transmittance.sum() > 0.0).then_some(Attenuation { depth, transmittance })
     }
 
@@ -117,13 +149,16 @@ impl VaryingFlakes {
         hero: usize,
         stream: &mut Stream,
     ) -> M::Channels {
-        if M::Channels::COUNT == 1 {
-            return M::Channels::splat(1.0);
+        let one = M::Channels::splat(1.0);
+        if M::Channels::COUNT == 1 || self.is_grey {
+            return one;
         }
-        let depth = self.mean.optical_depth::<M>(interval);
-        let ratio = self.mean.transmittance_ratio::<M>(interval, depth, hero, stream);
-        let ratio = ratio * self.corrections::<M>(interval, ratio, stream);
-        let over_hero = self.correction::<M>(interval, hero, -1.0, stream);
+        let sparsest = self.sparsest.as_ref().map_or(one, |medium| {
+            let depth = medium.optical_depth::<M>(interval);
+            medium.transmittance_ratio::<M>(interval, depth, hero, stream)
+        });
+        let ratio = sparsest * self.beyond_sparsest::<M>(interval, sparsest, stream);
+        let over_hero = self.beyond_sparsest_of::<M>(interval, hero, -1.0, stream);
         M::Channels::from_fn(|channel| if channel == hero { 1.0 } else { ratio.hero(channel) * over_hero })
     }
 
@@ -137,17 +172,18 @@ impl VaryingFlakes {
         hero: usize,
         stream: &mut Stream,
     ) -> DistanceSample<M::Channels> {
-        let whole = interval.whole();
-        let mut at = 0.0;
-        let collision = loop {
-            let Some(t) = next::<M>(&self.densest, &whole, at, hero, stream) else { break None };
-            let collision = (t as f32 - interval.skipped).max(0.0);
+        let (whole, [_, most]) = (interval.whole(), self.shares);
+        let (mut at, mut collision) = (0.0, None);
+        for _ in 0..MOST_NULLS {
+            let Some(t) = next::<M>(&self.densest, &whole, at, hero, stream) else { break };
+            let there = (t as f32 - interval.skipped).max(0.0);
             // Where light will scatter, to the last bit: a rounding error farther there may be no flakes.
-            if stream.uniform() * self.most < self.share(&interval.segment, collision) {
-                break Some(collision);
+            if stream.uniform() * most < self.share(&interval.segment, there) {
+                collision = Some(there);
+                break;
             }
             at = t;
-        };
+        }
         let passed = collision.map_or(*interval, |t| interval.up_to(t));
         let depth = self.mean.optical_depth::<M>(&passed);
         let ratio = self.transmittance_ratio::<M>(&passed, hero, stream);
@@ -160,20 +196,40 @@ impl VaryingFlakes {
     pub(super) fn unforced<M: MediaProfile>(
         &self,
         interval: &MediumInterval,
-        depth: M::Channels,
         hero: usize,
         stream: &mut Stream,
     ) -> Unforced<M::Channels> {
-        let Unforced { transmittance, depth, ratio } = self.mean.unforced::<M>(interval, depth, hero, stream);
-        let corrections = self.corrections::<M>(interval, transmittance, stream);
-        Unforced { transmittance: transmittance * corrections, depth, ratio: ratio * corrections }
+        let found = self.attenuation::<M>(interval, stream);
+        let transmittance = found.map_or(M::Channels::splat(0.0), |found| found.transmittance);
+        let depth = self.forced_depth::<M>(interval, hero);
+        Unforced { transmittance, depth, ratio: transmittance.scaled(depth.min(DEEPEST).exp()) }
     }
 
     /// See [`Medium::forced_depth`].
     #[cold]
     #[inline(never)]
     pub(super) fn forced_depth<M: MediaProfile>(&self, interval: &MediumInterval, hero: usize) -> f32 {
-        self.mean.forced_depth::<M>(interval, hero)
+        self.pieces::<M>(interval, hero).iter().sum()
+    }
+
+    /// Depths of equal parts of an interval, about: the mean's, times the share in the middle.
+    fn pieces<M: MediaProfile>(&self, interval: &MediumInterval, hero: usize) -> [f32; PIECES] {
+        let step = self.step::<M>(interval, hero);
+        std::array::from_fn(|i| {
+            let RaySegment { direction, .. } = interval.segment;
+            let piece = RaySegment { origin: interval.segment.at(i as f32 * step), direction, length: step };
+            let depth = self.mean.optical_depth::<M>(&MediumInterval::of(piece)).hero(hero);
+            depth * self.share(&piece, 0.5 * step).max(LEAST)
+        })
+    }
+
+    /// Length of one (m). An interval without end ends where nothing of the mean is left.
+    fn step<M: MediaProfile>(&self, interval: &MediumInterval, hero: usize) -> f32 {
+        let RaySegment { direction, length, .. } = interval.segment;
+        let sigma_t = M::Channels::from_spectrum(self.mean.bound().sigma_t).hero(hero);
+        let length =
+            if length < f32::INFINITY { length } else { DEEPEST / (sigma_t * self.flakes.area(direction)) };
+        length / PIECES as f32
     }
 
     /// See [`Medium::force_collision`].
@@ -186,14 +242,23 @@ impl VaryingFlakes {
         remaining: f32,
         stream: &mut Stream,
     ) -> Option<DistanceSample<M::Channels>> {
-        let sample = self.mean.force_collision::<M>(interval, hero, remaining, stream)?;
-        let t = sample.collision?;
-        let share = self.share(&interval.segment, t);
-        if share <= 0.0 {
+        let (pieces, step) = (self.pieces::<M>(interval, hero), self.step::<M>(interval, hero));
+        let (mut index, mut left) = (0, remaining);
+        while index + 1 < PIECES && left >= pieces[index] {
+            left -= pieces[index];
+            index += 1;
+        }
+        let t = (index as f32 + (left / pieces[index]).min(1.0)) * step;
+        let position = interval.segment.at(t);
+        let sigma_t = M::Channels::from_spectrum(self.properties_at::<M>(position).sigma_t).hero(hero);
+        let extinction = sigma_t * self.flakes.area_at(position, interval.segment.direction);
+        let weight = remaining.min(DEEPEST).exp() * extinction * step / pieces[index];
+        if !(weight > 0.0 && weight < f32::INFINITY) {
             return None;
         }
-        let corrections = self.corrections::<M>(&interval.up_to(t), sample.ratio, stream);
-        Some(DistanceSample { ratio: (sample.ratio * corrections).scaled(share), ..sample })
+        let Attenuation { depth, transmittance } = self.attenuation::<M>(&interval.up_to(t), stream)?;
+        let (collision, ratio) = (Some(t), transmittance.scaled(weight));
+        Some(DistanceSample { collision, component: 0, depth, ratio, spent: 0.0 })
     }
 
     /// See [`Medium::quick_depth`].
@@ -202,14 +267,11 @@ impl VaryingFlakes {
         if segment.length == f32::INFINITY {
             return mean;
         }
-        let step = segment.length / GLANCES as f32;
-        let shares = (0..GLANCES).map(|i| self.share(segment, (i as f32 + 0.5) * step));
-        mean * (shares.sum::<f32>() / GLANCES as f32)
+        let step = segment.length / PIECES as f32;
+        let shares = (0..PIECES).map(|i| self.share(segment, (i as f32 + 0.5) * step));
+        mean * (shares.sum::<f32>() / PIECES as f32)
     }
 }
-
-/// Points at which [`VaryingFlakes::quick_depth`] looks.
-const GLANCES: u32 = 16;
 
 /// The next collision of the `hero` channel in `medium` beyond `from` (m); none in what is left of `interval`.
 fn next<M: MediaProfile>(

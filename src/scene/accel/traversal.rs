@@ -163,44 +163,56 @@ impl Tree {
         let (mut current, mut height) = (INNER, 0);
         loop {
             let index = (current & !KIND) as usize;
-            match current & KIND {
-                INNER => height = self.open(index, &slabs, best.t_max, stack, height),
-                FLATS => best.offer(self.packs[index].closest(&wide, best.t_max)),
-                _ => best.offer(self.closest_of_round::<CURVED>(index, ray, best.t_max)),
-            }
-            loop {
-                if height == 0 {
-                    return best.hit;
+            let nearest = match current & KIND {
+                INNER => self.open(index, &slabs, best.t_max, stack, &mut height),
+                kind => {
+                    best.offer(match kind {
+                        FLATS => self.packs[index].closest(&wide, best.t_max),
+                        _ => self.closest_of_round::<CURVED>(index, ray, best.t_max),
+                    });
+                    None
                 }
-                height -= 1;
-                let (near, next) = stack[height];
-                if near < best.t_max {
-                    current = next;
-                    break;
-                }
-            }
+            };
+            let Some(next) = nearest.or_else(|| nearer(stack, &mut height, best.t_max)) else {
+                return best.hit;
+            };
+            current = next;
         }
     }
 
-    /// Puts the children that the ray hits on the stack, the nearest on top; returns its new height.
+    /// The nearest of the children that the ray hits, if it hits one; the others are put on the stack, nearer ones above.
     #[inline(always)]
-    fn open(&self, index: usize, slabs: &Slabs, t_max: f32, stack: &mut [Entry], base: usize) -> usize {
+    fn open(
+        &self,
+        index: usize,
+        slabs: &Slabs,
+        t_max: f32,
+        stack: &mut [Entry],
+        height: &mut usize,
+    ) -> Option<u32> {
         let node = &self.nodes[index];
         let (mut mask, near) = slabs.enter(node, t_max);
         let near = near.to_array();
-        let mut height = base;
-        while mask != 0 {
+        let mut take = || {
             let slot = mask.trailing_zeros() as usize & 3;
-            mask &= mask - 1;
-            let mut at = height;
-            while at > base && stack[at - 1].0 < near[slot] {
+            let found = (mask != 0).then(|| (near[slot], node.child[slot]));
+            mask &= mask.wrapping_sub(1);
+            found
+        };
+        let mut nearest = take()?;
+        let base = *height;
+        while let Some(other) = take() {
+            let (first, later) = if other.0 > nearest.0 { (nearest, other) } else { (other, nearest) };
+            nearest = first;
+            let mut at = *height;
+            while at > base && stack[at - 1].0 < later.0 {
                 stack[at] = stack[at - 1];
                 at -= 1;
             }
-            stack[at] = (near[slot], node.child[slot]);
-            height += 1;
+            stack[at] = later;
+            *height += 1;
         }
-        height
+        Some(nearest.1)
     }
 
     fn occluded_below<const CURVED: bool>(&self, ray: &Ray, stack: &mut [u32]) -> bool {
@@ -232,6 +244,19 @@ impl Tree {
         }
         false
     }
+}
+
+/// Takes the uppermost subtree off the stack that the ray enters before `t_max`, and all above it.
+#[inline(always)]
+fn nearer(stack: &[Entry], height: &mut usize, t_max: f32) -> Option<u32> {
+    while *height > 0 {
+        *height -= 1;
+        let (near, next) = stack[*height];
+        if near < t_max {
+            return Some(next);
+        }
+    }
+    None
 }
 
 /// The nearest hit so far.

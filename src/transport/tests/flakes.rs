@@ -1,6 +1,6 @@
 //! Flights through flakes that vary, against a quadrature over the numbers of their file.
 
-use super::scenes::{CHROMATIC_FELT, FELT_MATRICES, INSIDE, OUTSIDE, ROOM, WAVES_OF_FELT, build};
+use super::scenes::{CHROMATIC_FELT, FELT_MATRICES, HALF_FELT, INSIDE, OUTSIDE, SHELL, WAVES_OF_FELT, build};
 use crate::{
     math::{DVec3, RaySegment, Spectrum, vec3},
     medium::{Medium, MediumInterval},
@@ -22,7 +22,7 @@ struct Case {
 
 fn cases() -> [Case; 2] {
     let felt: [(_, &[&str]); 2] =
-        [("felt", &[CHROMATIC_FELT, INSIDE, ROOM]), ("waves of felt", &[OUTSIDE, WAVES_OF_FELT])];
+        [("felt", &[CHROMATIC_FELT, INSIDE, SHELL]), ("waves of felt", &[OUTSIDE, WAVES_OF_FELT])];
     felt.map(|(name, parts)| {
         let setup = build(parts);
         let origin = (DVec3::new(-0.7, -0.4, -0.5) - setup.scene.recentre).as_vec3();
@@ -148,4 +148,36 @@ fn forced_collisions_are_right_in_the_mean() {
         }
         estimates.iter().zip(truth).for_each(|(all, truth)| check(name, all, truth));
     }
+}
+
+/// The mean of all flakes is opaque where there are none: no estimate may rest on it.
+#[test]
+fn light_passes_where_there_are_no_flakes() {
+    let setup = build(&[HALF_FELT, INSIDE, SHELL]);
+    let (medium, mut stream) = (&setup.scene.media[1], Stream::new(10, 0, 0, Purpose::Study));
+    let origin = (DVec3::new(-0.7, -0.4, -0.5) - setup.scene.recentre).as_vec3();
+    // As far as x = 0.02.
+    let interval =
+        MediumInterval::of(RaySegment { origin, direction: vec3(0.8, 0.36, 0.48), length: 0.72 / 0.8 });
+    let truth = [40.0, 60.0, 50.0].map(|sigma_t: f64| (-sigma_t * 0.02 / 0.8).exp());
+    let (mut passed, mut flights, mut forced) = (vec![], vec![], vec![]);
+    for _ in 0..SAMPLES / 10 {
+        let through = medium.attenuation::<Everything>(&interval, &mut stream);
+        passed.push(through.map_or(Spectrum::ZERO, |through| through.transmittance));
+        let remaining = stream.exponential();
+        let sample = medium.sample_distance::<Everything>(&interval, 0, remaining, &mut stream);
+        flights.push(if sample.collision.is_none() { sample.ratio } else { Spectrum::ZERO });
+        let depth = medium.optical_depth::<Everything>(&interval);
+        let unforced = medium.unforced::<Everything>(&interval, depth, 0, &mut stream);
+        let caught = -(-unforced.depth).exp_m1();
+        let remaining = -(-stream.uniform() * caught).ln_1p();
+        let sample = medium.force_collision::<Everything>(&interval, 0, remaining, &mut stream);
+        forced.push(sample.map_or(0.0, |sample| f64::from(sample.ratio[0] * caught)));
+    }
+    for (channel, truth) in truth.into_iter().enumerate() {
+        let of = |all: &[Spectrum]| all.iter().map(|value| f64::from(value[channel])).collect::<Vec<_>>();
+        check("transmittance", &of(&passed), truth);
+        check("flights", &of(&flights), truth);
+    }
+    check("forced collisions", &forced, 1.0 - truth[0]);
 }

@@ -109,11 +109,11 @@ fn flakes() {
 /// The same where flakes vary.
 #[test]
 fn felt() {
-    examine_all::<Everything>("felt", &build(&[FELT, INSIDE, ROOM, LAMP, BALL]), 300);
-    examine_all::<Everything>("felt in colour", &build(&[CHROMATIC_FELT, INSIDE, ROOM, LAMP, BALL]), 300);
+    examine_all::<Everything>("felt", &build(&[FELT, INSIDE, SHELL, LAMP, BALL]), 300);
+    examine_all::<Everything>("felt in colour", &build(&[CHROMATIC_FELT, INSIDE, SHELL, LAMP, BALL]), 300);
     examine_all::<Everything>("waves of felt", &build(&[OUTSIDE, WAVES_OF_FELT, GROUND, LAMP, SKY]), 1000);
     let strategies = Strategies { equiangular: true, ..Strategies::BDPT };
-    let setup = build(&[CHROMATIC_FELT, INSIDE, ROOM, LAMP, BULB, POINT, BALL]);
+    let setup = build(&[CHROMATIC_FELT, INSIDE, SHELL, LAMP, BULB, POINT, BALL]);
     let along = examine::<Everything>("felt, along", &setup, Options { strategies, ..ALL }, 300);
     assert!(along.equiangular >= 30, "{}", along.equiangular);
 }

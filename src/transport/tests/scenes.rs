@@ -15,6 +15,8 @@ pub(crate) fn build(parts: &[&str]) -> Setup {
     std::fs::write(folder.path().join("octahedron.obj"), OCTAHEDRON).unwrap();
     std::fs::write(folder.path().join("voxels.vol"), voxels()).unwrap();
     std::fs::write(folder.path().join("flakes.vol"), flakes(&[ASKEW])).unwrap();
+    std::fs::write(folder.path().join("half.vol"), flakes(&[[0.0; 6], [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]]))
+        .unwrap();
     std::fs::write(folder.path().join("felt.vol"), flakes(&FELT_MATRICES)).unwrap();
     let sky = |x: usize, y: usize| (x as f32 + 0.1, 3.0 - y as f32, if x == 2 { 40.0 } else { 0.5 });
     exr::prelude::write_rgb_file(folder.path().join("sky.exr"), 6, 4, sky).unwrap();
@@ -91,6 +93,12 @@ pub(crate) const FELT: &str = r#""fog": {"type": "homogeneous", "sigma_t": 1.5, 
 pub(crate) const CHROMATIC_FELT: &str = r#""fog": {"type": "homogeneous", "sigma_t": {"type": "rgb", "value": [2, 1.5, 1]}, "albedo": 0.9,
     "phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "felt.vol",
         "to_world": [{"type": "scale", "value": 2}, {"type": "translate", "value": [-1, -1, -1]}]}}}"#;
+
+/// Dense flakes where x > 0, and none elsewhere.
+pub(crate) const HALF_FELT: &str = r#""fog": {"type": "homogeneous", "sigma_t": {"type": "rgb", "value": [40, 60, 50]}, "albedo": 0.9,
+    "phase": {"type": "sggx", "S": {"type": "gridvolume", "filename": "half.vol", "filter_type": "nearest",
+        "to_world": [{"type": "scale", "value": 2}, {"type": "translate", "value": [-1, -1, -1]}]}}}"#;
+
 pub(crate) const WAVES_OF_FELT: &str = r#""smoke": {"type": "cube", "bsdf": {"type": "null"},
     "to_world": [{"type": "rotate", "axis": [0, 1, 0], "angle": 25}],
     "interior": {"type": "heterogeneous", "scale": 3, "albedo": 0.9,
