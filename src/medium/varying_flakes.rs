@@ -2,7 +2,7 @@
 //! their mean, times a share between known bounds. Flights are those through the densest flakes that there may be: a
 //! collision counts with the probability that flakes there show so much, and the flight goes on where it does not (delta
 //! tracking). Transmittance is that of the sparsest, times estimates of what lies between (ratio tracking, Novak et al.
-//! 2014): no estimate exceeds 1. Weights use the mean alone.
+//! 2014): no estimate exceeds 1. Weights use a depth by the shares in a few places.
 //!
 //! All of these are media of flakes that are the same everywhere, whose trackers are free of bias.
 
@@ -33,10 +33,10 @@ pub(super) struct VaryingFlakes {
     is_grey: bool,
 }
 
-/// Parts of a ray by which collisions are forced.
+/// Equal parts of a ray, in the middle of which shares are looked up for depths that need not be exact.
 const PIECES: usize = 16;
 
-/// The least share of the mean that a part of a ray counts with, however few flakes there are in its middle.
+/// The least share of the mean by which collisions are forced in such a part, however few flakes there are in its middle.
 const LEAST: f32 = 0.05;
 
 /// A flight that has met so many places without flakes is taken for past all of them.
@@ -120,7 +120,19 @@ impl VaryingFlakes {
     #[cold]
     #[inline(never)]
     pub(super) fn optical_depth<M: MediaProfile>(&self, interval: &MediumInterval) -> M::Channels {
-        self.mean.optical_depth::<M>(interval)
+        if interval.segment.length == f32::INFINITY {
+            return self.mean.optical_depth::<M>(interval);
+        }
+        let step = interval.segment.length / PIECES as f32;
+        let parts = (0..PIECES).map(|i| self.part::<M>(interval, i, step));
+        parts.fold(M::Channels::splat(0.0), |sum, (depth, share)| sum + depth.scaled(share))
+    }
+
+    /// Part `i` of those of `step` metres: depth of the mean, and the share of it that is in its middle.
+    fn part<M: MediaProfile>(&self, interval: &MediumInterval, i: usize, step: f32) -> (M::Channels, f32) {
+        let RaySegment { direction, .. } = interval.segment;
+        let part = RaySegment { origin: interval.segment.at(i as f32 * step), direction, length: step };
+        (self.mean.optical_depth::<M>(&MediumInterval::of(part)), self.share(&part, 0.5 * step))
     }
 
     /// See [`Medium::attenuation`].
@@ -136,7 +148,7 @@ impl VaryingFlakes {
             None => M::Channels::splat(1.0),
         };
         let transmittance = sparsest * self.beyond_sparsest::<M>(interval, sparsest, stream);
-        let depth = self.mean.optical_depth::<M>(interval);
+        let depth = self.optical_depth::<M>(interval);
         (transmittance.sum() > 0.0).then_some(Attenuation { depth, transmittance })
     }
 
@@ -185,7 +197,7 @@ impl VaryingFlakes {
             at = t;
         }
         let passed = collision.map_or(*interval, |t| interval.up_to(t));
-        let depth = self.mean.optical_depth::<M>(&passed);
+        let depth = self.optical_depth::<M>(&passed);
         let ratio = self.transmittance_ratio::<M>(&passed, hero, stream);
         DistanceSample { collision, component: 0, depth, ratio, spent: 0.0 }
     }
@@ -216,10 +228,8 @@ impl VaryingFlakes {
     fn pieces<M: MediaProfile>(&self, interval: &MediumInterval, hero: usize) -> [f32; PIECES] {
         let step = self.step::<M>(interval, hero);
         std::array::from_fn(|i| {
-            let RaySegment { direction, .. } = interval.segment;
-            let piece = RaySegment { origin: interval.segment.at(i as f32 * step), direction, length: step };
-            let depth = self.mean.optical_depth::<M>(&MediumInterval::of(piece)).hero(hero);
-            depth * self.share(&piece, 0.5 * step).max(LEAST)
+            let (depth, share) = self.part::<M>(interval, i, step);
+            depth.hero(hero) * share.max(LEAST)
         })
     }
 

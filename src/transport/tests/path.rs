@@ -3,8 +3,7 @@
 use crate::{
     emitter::Kind,
     math::{DVec3, RaySegment, Spectrum, Vec2, Vec3, offset::Lift, vec2, vec3},
-    medium::{DistanceMethod, Heterogeneous, MediumIndex, MediumProperties},
-    phase::Phase,
+    medium::{DistanceMethod, Heterogeneous, Medium, MediumIndex, MediumInterval, MediumProperties},
     sampling::Stream,
     scene::{Scene, lights::EmitterPoint},
     shape::{Ray, SurfacePoint},
@@ -255,11 +254,10 @@ impl Way {
         reach: f64,
     ) {
         let medium = &scene.media[medium.0 as usize];
-        // Weights see the mean of flakes that vary.
-        let area = match &medium.phase {
-            Phase::Sggx(flakes) => flakes.area(direction.as_vec3()),
-            _ => 1.0,
-        };
+        if medium.depends_on_direction() && medium.phase.varies() {
+            return self.add_leg_of_flakes(medium, left, direction, distance, reach);
+        }
+        let area = medium.area::<Everything>(left.as_vec3(), direction.as_vec3());
         let sigma_t = medium.bound().sigma_t * area;
         self.rounding += ULP * reach * f64::from(sigma_t.max_element());
         if let Some(varying) = medium.heterogeneous() {
@@ -277,6 +275,24 @@ impl Way {
                 *depth += f64::from(sigma_t[channel]) * distance.max(0.0);
             }
         }
+    }
+
+    /// By the depth that the medium says, which the weights must use whatever it is.
+    fn add_leg_of_flakes(
+        &mut self,
+        medium: &Medium,
+        left: DVec3,
+        direction: DVec3,
+        distance: f64,
+        reach: f64,
+    ) {
+        let length = distance.max(0.0) as f32;
+        let segment = RaySegment { origin: left.as_vec3(), direction: direction.as_vec3(), length };
+        let depth = medium.optical_depth::<Everything>(&MediumInterval::of(segment));
+        // Ends that are rounded shift the places where flakes are looked at.
+        let shifted = 1.0 + STEEPNESS * distance.clamp(0.0, 10.0);
+        self.rounding += ULP * reach * f64::from(medium.densest().max_element()) * shifted;
+        self.depth = std::array::from_fn(|channel| self.depth[channel] + f64::from(depth[channel]));
     }
 
     /// The nearer to grazing a boundary is met, the less certain is where.
