@@ -77,13 +77,13 @@ impl MediumDescription {
 
     /// An error if it surrounds the scene without end although it varies: it would have to be examined to infinity.
     pub fn check_end(&self) -> Result<()> {
-        let what = match &self.fields {
-            _ if !self.extinguishes_without_end() => return Ok(()),
-            Some(_) => "its albedo varies",
-            None => match &self.medium.phase {
-                Phase::Sggx(flakes) if flakes.shares()[0] <= 0.0 => "some of it has no flakes",
-                _ => return Ok(()),
-            },
+        let passed = self.medium.transmittance_from_infinity();
+        let what = match (&self.fields, &self.medium.phase) {
+            (Some(_), _) if passed == Spectrum::ZERO => "its albedo varies",
+            (None, Phase::Sggx(flakes)) if passed != Spectrum::ONE && flakes.shares()[0] <= 0.0 => {
+                "some of it has no flakes"
+            }
+            _ => return Ok(()),
         };
         let remedy = "close it by shapes, openings by a \"null\" surface with this medium as its interior";
         let found = "one that surrounds the whole scene";

@@ -11,12 +11,12 @@ use super::{
     heterogeneous::DEEPEST,
 };
 use crate::{
-    math::{Channels, RaySegment, Spectrum, Vec3},
+    math::{Bounds, Channels, RaySegment, Spectrum, Vec3},
     phase::{Phase, Sggx},
     sampling::Stream,
 };
 
-/// A medium with its flakes replaced by others, the same everywhere.
+/// A medium, and what it is like with other flakes, the same everywhere.
 #[derive(Clone, Debug)]
 pub(super) struct VaryingFlakes {
     flakes: Sggx,
@@ -40,7 +40,10 @@ const PIECES: usize = 16;
 const LEAST: f32 = 0.05;
 
 /// A flight that has met so many places without flakes is taken for past all of them.
-const MOST_NULLS: u32 = 1 << 20;
+const MOST_NULLS: u32 = 1 << 18;
+
+/// No depth of the weights is greater: densities of paths must not underflow where there are fewer flakes than it seems.
+const DEEPEST_SEEN: f32 = 30.0;
 
 impl VaryingFlakes {
     /// What `flakes` make of `medium`, whatever its own are.
@@ -120,19 +123,24 @@ impl VaryingFlakes {
     #[cold]
     #[inline(never)]
     pub(super) fn optical_depth<M: MediaProfile>(&self, interval: &MediumInterval) -> M::Channels {
-        if interval.segment.length == f32::INFINITY {
-            return self.mean.optical_depth::<M>(interval);
+        let nothing = M::Channels::splat(0.0);
+        let Some((_, span)) = self.span(&interval.segment) else { return nothing };
+        if span.length == f32::INFINITY {
+            return self.mean.optical_depth::<M>(interval).at_most(DEEPEST_SEEN);
         }
-        let step = interval.segment.length / PIECES as f32;
-        let parts = (0..PIECES).map(|i| self.part::<M>(interval, i, step));
-        parts.fold(M::Channels::splat(0.0), |sum, (depth, share)| sum + depth.scaled(share))
+        let step = span.length / PIECES as f32;
+        let depth = |i| {
+            let part = part(&span, i, step);
+            self.mean.optical_depth::<M>(&MediumInterval::of(part)).scaled(self.share(&part, 0.5 * step))
+        };
+        (0..PIECES).map(depth).fold(nothing, |sum, depth| sum + depth).at_most(DEEPEST_SEEN)
     }
 
-    /// Part `i` of those of `step` metres: depth of the mean, and the share of it that is in its middle.
-    fn part<M: MediaProfile>(&self, interval: &MediumInterval, i: usize, step: f32) -> (M::Channels, f32) {
-        let RaySegment { direction, .. } = interval.segment;
-        let part = RaySegment { origin: interval.segment.at(i as f32 * step), direction, length: step };
-        (self.mean.optical_depth::<M>(&MediumInterval::of(part)), self.share(&part, 0.5 * step))
+    /// The part of a ray, and where it starts (m), beyond which nothing of the medium can be; none where nothing is.
+    fn span(&self, segment: &RaySegment) -> Option<(f32, RaySegment)> {
+        let Some(Bounds { low, high }) = self.mean.extent() else { return Some((0.0, *segment)) };
+        let [first, last] = segment.within(low, high)?;
+        Some((first, RaySegment { origin: segment.at(first), length: last - first, ..*segment }))
     }
 
     /// See [`Medium::attenuation`].
@@ -221,25 +229,25 @@ impl VaryingFlakes {
     #[cold]
     #[inline(never)]
     pub(super) fn forced_depth<M: MediaProfile>(&self, interval: &MediumInterval, hero: usize) -> f32 {
-        self.pieces::<M>(interval, hero).iter().sum()
+        self.forcing::<M>(interval, hero).map_or(0.0, |Forcing { depths, .. }| depths.iter().sum())
     }
 
-    /// Depths of equal parts of an interval, about: the mean's, times the share in the middle.
-    fn pieces<M: MediaProfile>(&self, interval: &MediumInterval, hero: usize) -> [f32; PIECES] {
-        let step = self.step::<M>(interval, hero);
-        std::array::from_fn(|i| {
-            let (depth, share) = self.part::<M>(interval, i, step);
-            depth.hero(hero) * share.max(LEAST)
-        })
-    }
-
-    /// Length of one (m). An interval without end ends where nothing of the mean is left.
-    fn step<M: MediaProfile>(&self, interval: &MediumInterval, hero: usize) -> f32 {
-        let RaySegment { direction, length, .. } = interval.segment;
-        let sigma_t = M::Channels::from_spectrum(self.mean.bound().sigma_t).hero(hero);
-        let length =
-            if length < f32::INFINITY { length } else { DEEPEST / (sigma_t * self.flakes.area(direction)) };
-        length / PIECES as f32
+    /// How collisions are forced in an interval; none where nothing of the medium can be.
+    fn forcing<M: MediaProfile>(&self, interval: &MediumInterval, hero: usize) -> Option<Forcing> {
+        let (first, mut span) = self.span(&interval.whole().segment)?;
+        if span.length == f32::INFINITY {
+            // As far as anything of the sparsest is left.
+            let sigma_t = M::Channels::from_spectrum(self.mean.bound().sigma_t).hero(hero);
+            let least = if self.shares[0] > 0.0 { self.shares[0] } else { 1.0 };
+            span.length = DEEPEST / (sigma_t * self.flakes.area(span.direction) * least);
+        }
+        let step = span.length / PIECES as f32;
+        let depths = std::array::from_fn(|i| {
+            let part = part(&span, i, step);
+            let mean = self.mean.forced_depth::<M>(&MediumInterval::of(part), hero);
+            mean * self.share(&part, 0.5 * step).max(LEAST)
+        });
+        Some(Forcing { first, step, depths })
     }
 
     /// See [`Medium::force_collision`].
@@ -252,22 +260,18 @@ impl VaryingFlakes {
         remaining: f32,
         stream: &mut Stream,
     ) -> Option<DistanceSample<M::Channels>> {
-        let (pieces, step) = (self.pieces::<M>(interval, hero), self.step::<M>(interval, hero));
-        let (mut index, mut left) = (0, remaining);
-        while index + 1 < PIECES && left >= pieces[index] {
-            left -= pieces[index];
-            index += 1;
-        }
-        let t = (index as f32 + (left / pieces[index]).min(1.0)) * step;
-        let position = interval.segment.at(t);
+        let (whole, forcing) = (interval.whole(), self.forcing::<M>(interval, hero)?);
+        let (t, density) = forcing.at(remaining);
+        let collision = (t - interval.skipped).max(0.0);
+        let (position, direction) = (interval.segment.at(collision), interval.segment.direction);
         let sigma_t = M::Channels::from_spectrum(self.properties_at::<M>(position).sigma_t).hero(hero);
-        let extinction = sigma_t * self.flakes.area_at(position, interval.segment.direction);
-        let weight = remaining.min(DEEPEST).exp() * extinction * step / pieces[index];
+        let extinction = sigma_t * self.flakes.area_at(position, direction);
+        let weight = remaining.min(DEEPEST).exp() * extinction / density;
         if !(weight > 0.0 && weight < f32::INFINITY) {
             return None;
         }
-        let Attenuation { depth, transmittance } = self.attenuation::<M>(&interval.up_to(t), stream)?;
-        let (collision, ratio) = (Some(t), transmittance.scaled(weight));
+        let Attenuation { depth, transmittance } = self.attenuation::<M>(&whole.up_to(t), stream)?;
+        let (collision, ratio) = (Some(collision), transmittance.scaled(weight));
         Some(DistanceSample { collision, component: 0, depth, ratio, spent: 0.0 })
     }
 
@@ -281,6 +285,33 @@ impl VaryingFlakes {
         let shares = (0..PIECES).map(|i| self.share(segment, (i as f32 + 0.5) * step));
         mean * (shares.sum::<f32>() / PIECES as f32)
     }
+}
+
+/// Equal parts of a ray that are as deep as it seems by what lies in their middle.
+struct Forcing {
+    /// Where the first begins (m).
+    first: f32,
+    /// Length of one (m).
+    step: f32,
+    depths: [f32; PIECES],
+}
+
+impl Forcing {
+    /// Where the depth is `remaining` (m from the boundary), and how fast it grows there (1/m).
+    fn at(&self, remaining: f32) -> (f32, f32) {
+        let (mut index, mut left) = (0, remaining);
+        while index + 1 < PIECES && left >= self.depths[index] {
+            left -= self.depths[index];
+            index += 1;
+        }
+        let within = (left / self.depths[index]).min(1.0);
+        (self.first + (index as f32 + within) * self.step, self.depths[index] / self.step)
+    }
+}
+
+/// Part `i` of those of `step` metres along a ray.
+fn part(segment: &RaySegment, i: usize, step: f32) -> RaySegment {
+    RaySegment { origin: segment.at(i as f32 * step), length: step, ..*segment }
 }
 
 /// The next collision of the `hero` channel in `medium` beyond `from` (m); none in what is left of `interval`.

@@ -1,5 +1,5 @@
 //! A block: a set of pixels, rendered together with a light cache of their own. They are scattered over the image. If no
-//! light subpaths are cached, those of all passes but the first are neighbours: their rays meet the same parts of the scene,
+//! light subpaths are cached, they are neighbours in all passes but the first: their rays meet the same parts of the scene,
 //! which are then in the processor's caches.
 
 use crate::{

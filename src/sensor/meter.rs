@@ -29,8 +29,8 @@ enum Extent {
     Disc,
     /// At one point. No light subpath finds the one ray from there.
     Ray,
-    /// All over a shape, so far in front of it as the one point lies before the origin. Several rays meet at a point
-    /// behind the shape, and no light subpath is connected to any.
+    /// In front of all points of a shape: as far from each as the one point is from the origin. Many rays may pass a point
+    /// of the scene, so no light subpath is connected to them.
     Surface(Shape),
 }
 

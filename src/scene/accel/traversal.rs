@@ -75,8 +75,8 @@ impl Tree {
         }
     }
 
-    /// Entries on the stack: each level leaves at most three siblings, the last one all four children. 0 for a plain
-    /// list. With curved primitives, [`RARE`] levels more.
+    /// Entries on the stack: each level leaves at most three siblings, the last one of a shadow ray all four children. 0 for
+    /// a plain list. With curved primitives, [`RARE`] levels more.
     #[inline]
     fn stack_need(&self) -> usize {
         if self.depth == 0 { 0 } else { 3 * self.depth + 1 }
