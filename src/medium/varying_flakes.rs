@@ -245,7 +245,7 @@ impl VaryingFlakes {
         let depths = std::array::from_fn(|i| {
             let part = part(&span, i, step);
             let mean = self.mean.forced_depth::<M>(&MediumInterval::of(part), hero);
-            mean * self.share(&part, 0.5 * step).max(LEAST)
+            (mean * self.share(&part, 0.5 * step).max(LEAST)).min(1.0)
         });
         Some(Forcing { first, step, depths })
     }
@@ -287,7 +287,8 @@ impl VaryingFlakes {
     }
 }
 
-/// Equal parts of a ray that are as deep as it seems by what lies in their middle.
+/// Equal parts of a ray that are as deep as it seems by what lies in their middle, but no deeper than 1: where there are
+/// fewer flakes than there seem to be, collisions behind them must not become rare.
 struct Forcing {
     /// Where the first begins (m).
     first: f32,
