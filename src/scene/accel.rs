@@ -3,13 +3,14 @@
 mod pack;
 mod traversal;
 mod tree;
+mod widening;
 
 use crate::{
     math::{Attribute, Bounds, Corners, Vec3},
     sampling::Stream,
     shape::{Hit, Primitive, Ray, Shape, ShapeModel, Shared, SurfacePoint},
 };
-use tree::Tree;
+use tree::{Label, Tree};
 
 #[cfg(test)]
 thread_local! {
@@ -21,25 +22,18 @@ thread_local! {
 #[derive(Clone, Debug)]
 pub struct Geometry {
     shapes: Vec<Shape>,
-    /// The first primitive of each shape.
-    first: Vec<u32>,
-    /// The shape of each primitive.
-    owner: Vec<u32>,
     tree: Tree,
 }
 
 impl Geometry {
     /// Shapes keep their numbers: the index in `shapes`.
     pub fn build(shapes: Vec<Shape>) -> Self {
-        let (mut first, mut owner) = (Vec::with_capacity(shapes.len()), Vec::new());
-        let mut primitives: Vec<Primitive> = Vec::new();
-        for (index, shape) in shapes.iter().enumerate() {
-            first.push(primitives.len() as u32);
-            owner.extend(std::iter::repeat_n(index as u32, shape.primitive_count()));
-            primitives.extend((0..shape.primitive_count()).map(|local| shape.primitive(local)));
-        }
+        let of_shape = |(number, shape): (u32, &Shape)| -> Vec<(Label, Primitive)> {
+            (0..shape.primitive_count()).map(|i| ([number, i as u32], shape.primitive(i))).collect()
+        };
+        let primitives: Vec<_> = (0..).zip(&shapes).flat_map(of_shape).collect();
         let tree = Tree::build(&primitives);
-        Self { shapes, first, owner, tree }
+        Self { shapes, tree }
     }
 
     /// The shapes it was built from.
@@ -85,16 +79,9 @@ impl Geometry {
     /// The surface at `hit`, which `ray` found.
     #[inline]
     pub fn surface(&self, ray: &Ray, hit: &Hit) -> SurfacePoint {
-        let shape = self.shape_of(hit);
-        let local = hit.primitive - self.first[shape as usize];
-        let point = self.shapes[shape as usize].surface(local as usize, ray, hit);
+        let Hit { shape, primitive, .. } = *hit;
+        let point = self.shapes[shape as usize].surface(primitive as usize, ray, hit);
         SurfacePoint { shape, ..point }
-    }
-
-    /// The shape that was hit.
-    #[inline]
-    pub fn shape_of(&self, hit: &Hit) -> u32 {
-        self.owner[hit.primitive as usize]
     }
 
     /// How position changes with the texture coordinates u and v (m) at `point`.
@@ -144,7 +131,7 @@ impl Shared for Geometry {
     }
 
     fn surface(&self, ray: &Ray, primitive: u32, t: f32) -> SurfacePoint {
-        let mut hit = Hit { t, primitive, u: 0.0, v: 0.0 };
+        let mut hit = Hit { t, shape: 0, primitive, u: 0.0, v: 0.0 };
         if let Primitive::Flat(flat) = self.shapes[0].primitive(primitive as usize) {
             let point = ray.origin.as_dvec3() + ray.direction.as_dvec3() * f64::from(t);
             [hit.u, hit.v] = flat.coordinates(point).map(|x| x as f32);

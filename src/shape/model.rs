@@ -118,7 +118,9 @@ pub trait ShapeModel {
         let Primitive::Flat(flat) = self.primitive(index) else { return (tangent, bitangent) };
         // Positions and texture coordinates both are linear in those of the primitive.
         let ray = Ray { origin: flat.corner, direction: flat.normal, t_max: 0.0 };
-        let uv = |u: f32, v: f32| self.surface(index, &ray, &Hit { t: 0.0, primitive: 0, u, v }).uv.get();
+        let uv = |u: f32, v: f32| {
+            self.surface(index, &ray, &Hit { t: 0.0, shape: 0, primitive: 0, u, v }).uv.get()
+        };
         let (along_u, along_v) = (uv(1.0, 0.0) - uv(0.0, 0.0), uv(0.0, 1.0) - uv(0.0, 0.0));
         let area = along_u.perp_dot(along_v);
         if area == 0.0 {

@@ -21,7 +21,9 @@ pub struct Ray {
 pub struct Hit {
     /// Distance (m).
     pub t: f32,
-    /// Which primitive of the geometry.
+    /// The number of its shape in the geometry.
+    pub shape: u32,
+    /// And its own in the shape.
     pub primitive: u32,
     /// First surface coordinate (see [`super::ShapeModel::surface`]).
     pub u: f32,

@@ -1,5 +1,6 @@
 //! The innermost loop: a ray against four flat primitives at once, or against one sphere.
 
+use super::tree::Label;
 use crate::{
     math::{Vec3, axes, offset::SEAM},
     shape::{Flat, Hit, Ray},
@@ -54,7 +55,7 @@ pub(super) struct FlatPack {
     fold: Vec4,
     /// Greatest length of the reciprocal axes (1/m): how fast errors in position become errors in u and v.
     reach: Vec4,
-    primitive: [u32; 4],
+    labels: [Label; 4],
 }
 
 /// What four lanes found.
@@ -66,16 +67,16 @@ struct Found {
 }
 
 impl FlatPack {
-    /// From at most four primitives and their numbers.
-    pub(super) fn new(flats: &[(u32, Flat)]) -> Self {
+    /// From at most four primitives.
+    pub(super) fn new(flats: &[(Label, Flat)]) -> Self {
         let mut pack = Self::default();
-        for (lane, (number, flat)) in flats.iter().enumerate() {
-            pack.set(lane, *number, flat);
+        for (lane, (label, flat)) in flats.iter().enumerate() {
+            pack.set(lane, *label, flat);
         }
         pack
     }
 
-    fn set(&mut self, lane: usize, number: u32, flat: &Flat) {
+    fn set(&mut self, lane: usize, label: Label, flat: &Flat) {
         let (u, v) = (flat.edge_u.as_dvec3(), flat.edge_v.as_dvec3());
         let cross = u.cross(v);
         let (axis_u, axis_v) =
@@ -86,7 +87,7 @@ impl FlatPack {
         self.axis_v.set(lane, axis_v.as_vec3());
         self.fold[lane] = if flat.triangle { 1.0 } else { 0.0 };
         self.reach[lane] = axis_u.length().max(axis_v.length()) as f32;
-        self.primitive[lane] = number;
+        self.labels[lane] = label;
     }
 
     /// Plane first, then (u, v) of the point where the ray hits it: both relative to the corner, so that
@@ -115,7 +116,8 @@ impl FlatPack {
         let nearest = t.min_element();
         let lane = t.cmpeq(Vec4::splat(nearest)).bitmask().trailing_zeros() as usize & 3;
         let (u, v) = (found.u.to_array()[lane], found.v.to_array()[lane]);
-        Some(Hit { t: nearest, primitive: self.primitive[lane], u, v })
+        let [shape, primitive] = self.labels[lane];
+        Some(Hit { t: nearest, shape, primitive, u, v })
     }
 
     /// True if anything is hit with t in (0, `t_max`).
@@ -132,8 +134,8 @@ pub(super) struct Ball {
     pub center: Vec3,
     /// Its radius (m).
     pub radius: f32,
-    /// Its number.
-    pub primitive: u32,
+    /// Whose it is.
+    pub label: Label,
 }
 
 impl Ball {
@@ -155,6 +157,7 @@ impl Ball {
         let q = b + discriminant.sqrt().copysign(b);
         let (near, far) = if q > 0.0 { (c / q, q) } else { (q, c / q) };
         let t = if outside { near } else { far };
-        (t > 0.0 && t < t_max).then_some(Hit { t, primitive: self.primitive, u: 0.0, v: 0.0 })
+        let [shape, primitive] = self.label;
+        (t > 0.0 && t < t_max).then_some(Hit { t, shape, primitive, u: 0.0, v: 0.0 })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     pack::WideRay,
-    tree::{BEYOND, FLATS, INNER, KIND, Node, RARE, ROUND, Tree},
+    tree::{BEYOND, FLATS, Form, INNER, KIND, Node, ROUND, Tree, WIDTH},
 };
 use crate::{
     math::{
@@ -11,100 +11,119 @@ use crate::{
     },
     shape::{CurvedModel, Hit, Ray},
 };
-use glam::Vec4;
+use wide::f32x8;
 
-/// A ray's reciprocal direction over four lanes, finite in every component.
+/// A ray over eight lanes, with its reciprocal direction, finite in every component.
 struct Slabs {
-    origin: [Vec4; 3],
-    inverse: [Vec4; 3],
+    origin: [f32x8; 3],
+    inverse: [f32x8; 3],
     /// Per axis: which of a box's two planes the ray crosses first.
     first: [usize; 3],
 }
 
 impl Slabs {
     #[inline(always)]
-    fn new(ray: &Ray, wide: &WideRay) -> Self {
+    fn new(ray: &Ray) -> Self {
         let least = |d: f32| if d.abs() < LEAST_COMPONENT { LEAST_COMPONENT.copysign(d) } else { d };
         let direction = axes(|i| least(ray.direction[i]));
         Self {
-            origin: wide.origin,
-            inverse: axes(|i| Vec4::splat(1.0 / direction[i])),
+            origin: axes(|i| f32x8::splat(ray.origin[i])),
+            inverse: axes(|i| f32x8::splat(1.0 / direction[i])),
             first: axes(|i| usize::from(direction[i] < 0.0)),
         }
     }
 
     /// Which boxes the ray hits before `t_max` (a bit each), and where it enters them.
     #[inline(always)]
-    fn enter(&self, node: &Node, t_max: f32) -> (u32, Vec4) {
-        let (mut near, mut far) = (Vec4::ZERO, Vec4::INFINITY);
+    fn enter(&self, node: &Node, t_max: f32) -> (u32, f32x8) {
+        let (mut near, mut far) = (f32x8::ZERO, f32x8::splat(f32::INFINITY));
         for axis in 0..3 {
             let first = self.first[axis] & 1;
             let (a, b) = (node.planes[first][axis], node.planes[1 - first][axis]);
-            near = near.max((a - self.origin[axis]) * self.inverse[axis]);
-            far = far.min((b - self.origin[axis]) * self.inverse[axis]);
+            near = near.fast_max((a - self.origin[axis]) * self.inverse[axis]);
+            far = far.fast_min((b - self.origin[axis]) * self.inverse[axis]);
         }
-        let far = (far * BOX_WIDENING).min(Vec4::splat(t_max));
-        (near.cmple(far).bitmask(), near)
+        let far = (far * BOX_WIDENING).fast_min(f32x8::splat(t_max));
+        (near.simd_le(far).to_bitmask(), near)
     }
 }
 
 /// A subtree yet to be visited: where the ray enters its box, and what it is.
 type Entry = (f32, u32);
 
-/// Room for the siblings left behind on the way down an ordinary tree.
+/// Room for the siblings that rays leave behind on their way down ordinary trees.
 const SHALLOW: usize = 64;
+
+/// The stack has no room for the children of one more node.
+#[derive(Debug)]
+pub(super) struct Full;
 
 impl Tree {
     /// The nearest hit with t in (0, `t_max`).
     #[inline]
     pub(super) fn closest(&self, ray: &Ray) -> Option<Hit> {
-        match self.stack_need() {
-            0 => self.closest_of_list(ray),
-            1..=SHALLOW => self.closest_below::<false>(ray, &mut [(0.0, 0); SHALLOW]),
-            need => self.closest_rarely(ray, need),
+        match self.form {
+            Form::List => self.closest_of_list(ray),
+            Form::Nodes => self.closest_of_nodes::<false>(ray),
+            Form::CurvedList => self.closest_of_mixed_list(ray),
+            Form::CurvedNodes => self.closest_of_mixed_nodes(ray),
         }
     }
 
     /// True if anything is hit with t in (0, `t_max`).
     #[inline]
     pub(super) fn occluded(&self, ray: &Ray) -> bool {
-        match self.stack_need() {
-            0 => self.occluded_by_list(ray),
-            1..=SHALLOW => self.occluded_below::<false>(ray, &mut [0; SHALLOW]),
-            need => self.occluded_rarely(ray, need),
+        match self.form {
+            Form::List => self.occluded_by_list(ray),
+            Form::Nodes => self.occluded_by_nodes::<false>(ray),
+            Form::CurvedList => self.occluded_by_mixed_list(ray),
+            Form::CurvedNodes => self.occluded_by_mixed_nodes(ray),
         }
     }
 
-    /// Entries on the stack: each level leaves at most three siblings, the last one of a shadow ray all four children. 0 for
-    /// a plain list. With curved primitives, [`RARE`] levels more.
     #[inline]
-    fn stack_need(&self) -> usize {
-        if self.depth == 0 { 0 } else { 3 * self.depth + 1 }
+    fn closest_of_nodes<const CURVED: bool>(&self, ray: &Ray) -> Option<Hit> {
+        let found = self.closest_below::<CURVED>(ray, &mut [(0.0, 0); SHALLOW]);
+        found.unwrap_or_else(|Full| self.closest_deep::<CURVED>(ray))
     }
 
-    /// Very deep trees, and curved primitives.
     #[inline(never)]
-    fn closest_rarely(&self, ray: &Ray, need: usize) -> Option<Hit> {
-        if need < RARE {
-            return self.closest_below::<false>(ray, &mut vec![(0.0, 0); need]);
-        }
-        match need - 3 * RARE {
-            1 => self.closest_of_mixed_list(ray),
-            2..=SHALLOW => self.closest_below::<true>(ray, &mut [(0.0, 0); SHALLOW]),
-            need => self.closest_below::<true>(ray, &mut vec![(0.0, 0); need]),
+    fn closest_of_mixed_nodes(&self, ray: &Ray) -> Option<Hit> {
+        self.closest_of_nodes::<true>(ray)
+    }
+
+    /// In very deep trees: with as much room as it takes.
+    #[inline(never)]
+    fn closest_deep<const CURVED: bool>(&self, ray: &Ray) -> Option<Hit> {
+        let mut room = 2 * SHALLOW;
+        loop {
+            match self.closest_below::<CURVED>(ray, &mut vec![(0.0, 0); room]) {
+                Ok(hit) => return hit,
+                Err(Full) => room *= 2,
+            }
         }
     }
 
-    /// Very deep trees, and curved primitives.
+    #[inline]
+    fn occluded_by_nodes<const CURVED: bool>(&self, ray: &Ray) -> bool {
+        let found = self.occluded_below::<CURVED>(ray, &mut [0; SHALLOW]);
+        found.unwrap_or_else(|Full| self.occluded_deep::<CURVED>(ray))
+    }
+
     #[inline(never)]
-    fn occluded_rarely(&self, ray: &Ray, need: usize) -> bool {
-        if need < RARE {
-            return self.occluded_below::<false>(ray, &mut vec![0; need]);
-        }
-        match need - 3 * RARE {
-            1 => self.occluded_by_mixed_list(ray),
-            2..=SHALLOW => self.occluded_below::<true>(ray, &mut [0; SHALLOW]),
-            need => self.occluded_below::<true>(ray, &mut vec![0; need]),
+    fn occluded_by_mixed_nodes(&self, ray: &Ray) -> bool {
+        self.occluded_by_nodes::<true>(ray)
+    }
+
+    /// In very deep trees: with as much room as it takes.
+    #[inline(never)]
+    fn occluded_deep<const CURVED: bool>(&self, ray: &Ray) -> bool {
+        let mut room = 2 * SHALLOW;
+        loop {
+            match self.occluded_below::<CURVED>(ray, &mut vec![0; room]) {
+                Ok(found) => return found,
+                Err(Full) => room *= 2,
+            }
         }
     }
 
@@ -143,8 +162,9 @@ impl Tree {
     }
 
     fn closest_of_curved(&self, index: usize, ray: &Ray, t_max: f32) -> Option<Hit> {
-        let (curved, primitive) = &self.curved[index];
-        curved.closest(ray, t_max).map(|[t, u, v]| Hit { t, primitive: *primitive, u, v })
+        let (curved, [shape, primitive]) = &self.curved[index];
+        let hit = |[t, u, v]: [f32; 3]| Hit { t, shape: *shape, primitive: *primitive, u, v };
+        curved.closest(ray, t_max).map(hit)
     }
 
     /// What `index` of a reference to a [`ROUND`] refers to, in a tree with `CURVED` primitives or without.
@@ -156,14 +176,18 @@ impl Tree {
         self.balls[index].closest(ray, t_max)
     }
 
-    fn closest_below<const CURVED: bool>(&self, ray: &Ray, stack: &mut [Entry]) -> Option<Hit> {
-        let wide = WideRay::new(ray);
-        let slabs = Slabs::new(ray, &wide);
+    pub(super) fn closest_below<const CURVED: bool>(
+        &self,
+        ray: &Ray,
+        stack: &mut [Entry],
+    ) -> Result<Option<Hit>, Full> {
+        let (wide, slabs) = (WideRay::new(ray), Slabs::new(ray));
         let mut best = Best::new(ray);
         let (mut current, mut height) = (INNER, 0);
         loop {
             let index = (current & !KIND) as usize;
             let nearest = match current & KIND {
+                INNER if height + WIDTH > stack.len() => return Err(Full),
                 INNER => self.open(index, &slabs, best.t_max, stack, &mut height),
                 kind => {
                     best.offer(match kind {
@@ -174,7 +198,7 @@ impl Tree {
                 }
             };
             let Some(next) = nearest.or_else(|| nearer(stack, &mut height, best.t_max)) else {
-                return best.hit;
+                return Ok(best.hit);
             };
             current = next;
         }
@@ -194,7 +218,7 @@ impl Tree {
         let (mut mask, near) = slabs.enter(node, t_max);
         let near = near.to_array();
         let mut take = || {
-            let slot = mask.trailing_zeros() as usize & 3;
+            let slot = mask.trailing_zeros() as usize % WIDTH;
             let found = (mask != 0).then(|| (near[slot], node.child[slot]));
             mask &= mask.wrapping_sub(1);
             found
@@ -215,17 +239,19 @@ impl Tree {
         Some(nearest.1)
     }
 
-    fn occluded_below<const CURVED: bool>(&self, ray: &Ray, stack: &mut [u32]) -> bool {
-        let wide = WideRay::new(ray);
-        let slabs = Slabs::new(ray, &wide);
+    fn occluded_below<const CURVED: bool>(&self, ray: &Ray, stack: &mut [u32]) -> Result<bool, Full> {
+        let (wide, slabs) = (WideRay::new(ray), Slabs::new(ray));
         let mut height = 1;
         stack[0] = INNER;
         while height > 0 {
             height -= 1;
+            if height + WIDTH > stack.len() {
+                return Err(Full);
+            }
             let node = &self.nodes[(stack[height] & !KIND) as usize];
             let (mut mask, _) = slabs.enter(node, ray.t_max);
             while mask != 0 {
-                let child = node.child[mask.trailing_zeros() as usize & 3];
+                let child = node.child[mask.trailing_zeros() as usize % WIDTH];
                 mask &= mask - 1;
                 let index = (child & !KIND) as usize;
                 let blocked = match child & KIND {
@@ -238,11 +264,11 @@ impl Tree {
                     }
                 };
                 if blocked {
-                    return true;
+                    return Ok(true);
                 }
             }
         }
-        false
+        Ok(false)
     }
 }
 

@@ -247,7 +247,7 @@ impl<'a> Faces<'a> {
             return f64::from(point.shading.normal.dot(from_middle)).signum();
         };
         let nowhere = Ray { origin: Vec3::ZERO, direction: Vec3::Z, t_max: 0.0 };
-        let hit = Hit { t: 0.0, primitive: 0, u: 0.25, v: 0.25 };
+        let hit = Hit { t: 0.0, shape: 0, primitive: 0, u: 0.25, v: 0.25 };
         let point = shape.surface(face.primitive, &nowhere, &hit);
         point.shading.normal.as_dvec3().dot(normal).signum()
     }

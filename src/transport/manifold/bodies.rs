@@ -187,7 +187,8 @@ impl Body {
             },
         };
         let shape = &scene.geometry.shapes()[self.shape as usize];
-        let point = shape.surface(link.primitive, &ray, &Hit { t, primitive: link.primitive as u32, u, v });
+        let point =
+            shape.surface(link.primitive, &ray, &Hit { t, shape: 0, primitive: link.primitive as u32, u, v });
         Some(SurfacePoint { shape: self.shape, ..point })
     }
 }
@@ -260,7 +261,8 @@ fn plane(shape: &Shape, number: usize) -> Option<(Plane, Primitive)> {
         _ => return None,
     };
     let ray = Ray { origin: flat.corner, direction: flat.normal, t_max: f32::INFINITY };
-    let shading = shape.surface(number, &ray, &Hit { t: 0.0, primitive: 0, u: 0.0, v: 0.0 }).shading.normal;
+    let shading =
+        shape.surface(number, &ray, &Hit { t: 0.0, shape: 0, primitive: 0, u: 0.0, v: 0.0 }).shading.normal;
     let [u, v] = [flat.edge_u, flat.edge_v].map(|edge| edge.as_dvec3());
     let normal = u.cross(v).normalize();
     let normal = normal * normal.dot(shading.as_dvec3()).signum();

@@ -246,7 +246,8 @@ pub(super) fn sphere_mesh(rings: usize, segments: usize, size: f64, center: DVec
 fn meshes_are_found_as_triangle_by_triangle() {
     let geometry = sphere_mesh(30, 40, 1.0, DVec3::ZERO);
     let shape = &geometry.shapes()[0];
-    let packs: Vec<_> = (0..shape.primitive_count()).map(|i| Tree::build(&[shape.primitive(i)])).collect();
+    let packs: Vec<_> =
+        (0..shape.primitive_count()).map(|i| Tree::build(&[([0, i as u32], shape.primitive(i))])).collect();
     let mut stream = stream(2);
     for _ in 0..2000 {
         let ray = ray(within(&mut stream, 1.5).as_vec3(), warp::to_sphere(stream.square()));

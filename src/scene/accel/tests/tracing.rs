@@ -29,7 +29,7 @@ fn hierarchy_finds_what_each_shape_alone_finds() {
             assert_eq!(all.occluded(&ray), found.is_some());
             if let (Some(hit), Some((shape, wanted))) = (found, wanted) {
                 hits += 1;
-                assert_eq!(all.shape_of(&hit), shape as u32);
+                assert_eq!(hit.shape, shape as u32);
                 assert_eq!((hit.u, hit.v), (wanted.u, wanted.v));
                 let short = Ray { t_max: hit.t, ..ray };
                 assert!(all.closest(&short).is_none() && !all.occluded(&short), "t_max is excluded");
@@ -94,5 +94,24 @@ fn what_f32_cannot_hold_is_refused() {
         for step in [scale(1e20, 1e20, 1e20), scale(1e-25, 1e-25, 1e-25), shift(1e20, 0.0, 0.0)] {
             assert!(shape_of(plugin, &[("to_world", Value::Transform(vec![step]))], DVec3::ZERO).is_err());
         }
+    }
+}
+
+/// Squares in a cone, each a fiftieth larger than the one before it, make a chain of nodes. Down it a ray from the tip leaves
+/// more siblings behind than there is room for at first.
+#[test]
+fn deep_trees_lose_nothing() {
+    let square = |i: i32| {
+        let size = 1.02f64.powi(i);
+        placed("rectangle", vec![scale(size, size, 1.0), turn([0.0, 0.0, 1.0], 45.0), shift(0.0, 0.0, size)])
+    };
+    let geometry = Geometry::build((0..1000).map(square).collect());
+    for (aside, is_hit) in [(0.1, true), (1.3, false)] {
+        // Both pass all boxes, the second one beside the squares in them.
+        let ray = ray(Vec3::ZERO, vec3(aside, aside, 1.0));
+        let found = geometry.closest(&ray).map(|hit| hit.t * ray.direction.z);
+        assert!(geometry.tree.closest_below::<false>(&ray, &mut [(0.0, 0); 64]).is_err(), "not deep enough");
+        assert_eq!(found.map(|z| (z - 1.0).abs() < 1e-5), is_hit.then_some(true));
+        assert_eq!(geometry.occluded(&ray), is_hit);
     }
 }
