@@ -7,7 +7,7 @@
 
 use super::{Deflection, PhaseModel};
 use crate::{
-    description::{Params, Table, table},
+    description::{Location, Params, Table, table},
     error::{Error, Result},
     math::{DMat3, DVec3, Frame, Mat3, Vec3, warp},
     sampling::Stream,
@@ -55,7 +55,7 @@ const ANY: [f64; 3] = [0.0, f64::INFINITY, 0.0];
 impl Sggx {
     pub(super) const TABLE: Table = table! {
         "Specular microflakes (Heitz et al. 2015): mirrors whose normals are distributed as those of an ellipsoid. The area that they show scales the medium's extinction.";
-        object("S", "volume", "A `gridvolume` of 6 channels: xx, yy, zz, xy, xz, yz of a positive definite matrix, or 0 where there are no flakes; n S n is the squared area seen along n.").required(),
+        object("S", "volume", "A `gridvolume` of 6 channels: xx, yy, zz, xy, xz, yz of a positive definite matrix in the axes of the scene, or 0 where there are no flakes; n S n is the squared area seen along n. `to_world` moves the voxels and leaves the matrices as they are; an `instance` turns them.").required(),
     };
 
     /// The same everywhere.
@@ -69,13 +69,12 @@ impl Sggx {
         for (voxel, numbers) in grid.voxels() {
             let matrix = turned(numbers, turn);
             if matrix != DMat3::ZERO {
-                lower(matrix, RANGE).ok_or(Unfit { voxel, numbers })?;
+                lower(matrix, RANGE).ok_or(Unfit::Voxel(voxel, numbers))?;
             }
             (sum, count) = (sum + matrix, count + 1.0);
         }
         let mean = sum * (1.0 / count);
-        let nothing = Unfit { voxel: [0; 3], numbers: [0.0; 6] };
-        let shares = shares(&grid, turn, lower(mean, ANY).ok_or(nothing)?);
+        let shares = shares(&grid, turn, lower(mean, ANY).ok_or(Unfit::Empty)?);
         let varying = (shares[0] < 1.0 - EVEN || shares[1] > 1.0 + EVEN)
             .then(|| Arc::new(Varying { grid, turn, shares }));
         Ok(Self { varying, ..Self::even(Ellipsoid::new(mean)) })
@@ -86,16 +85,8 @@ impl Sggx {
         // In an instance, areas turn with what they are of; extinction stays what it is per metre.
         let placed = place.instance.matrix3;
         let turn = placed.inverse().transpose() * placed.determinant().abs().cbrt();
-        Self::new(Sixfold::read(grid.object, params.library, place)?, turn).map_err(|Unfit { voxel: [x, y, z], numbers }| {
-            let [least, most, _] = RANGE;
-            let expected = format!(
-                "xx, yy, zz, xy, xz, yz of a positive definite matrix, the largest from {least:e} to {most:e}"
-            );
-            let found = format!("{:?} in the voxel ({x}, {y}, {z})", numbers.map(|number| number as f32));
-            let remedy = "raise xx, yy and zz: the square of each other number is less than the product of the two \
-                          in its row and column, and flakes have some thickness";
-            Error::new(&grid.object.location, expected, found, remedy)
-        })
+        Self::new(Sixfold::read(grid.object, params.library, place)?, turn)
+            .map_err(|unfit| unfit.refuse(&grid.object.location))
     }
 
     /// Flakes without an order: as isotropic as they are many.
@@ -162,11 +153,43 @@ impl Varying {
     }
 }
 
-/// A voxel whose numbers are no positive definite matrix, or out of range.
+/// Why a grid holds no flakes.
 #[derive(Debug)]
-struct Unfit {
-    voxel: [usize; 3],
-    numbers: [f64; 6],
+enum Unfit {
+    /// Six numbers of a voxel are no positive definite matrix, or out of range.
+    Voxel([usize; 3], [f64; 6]),
+    /// All are 0.
+    Empty,
+}
+
+impl Unfit {
+    fn refuse(self, location: &Location) -> Error {
+        let Self::Voxel([x, y, z], numbers) = self else {
+            let remedy = "give a voxel a matrix, or remove the medium";
+            return Error::new(location, "flakes in some voxel", "zeros in all of them", remedy);
+        };
+        let (expected, remedy) = Self::expected(numbers);
+        let found = format!("{:?} in the voxel ({x}, {y}, {z})", numbers.map(|number| number as f32));
+        Error::new(location, expected, found, remedy)
+    }
+
+    /// In place of `numbers`, and how to get there.
+    fn expected(numbers: [f64; 6]) -> (String, &'static str) {
+        let [least, most, thinnest] = RANGE;
+        if !numbers.iter().all(|number| number.is_finite()) {
+            return ("six numbers".into(), "correct the file");
+        }
+        if lower(symmetric(numbers), [0.0, f64::INFINITY, thinnest]).is_some() {
+            let expected = format!("xx, yy and zz of which the largest is between {least:e} and {most:e}");
+            return (
+                expected,
+                "give areas around 1, and scale the medium's extinction by the root of the rest",
+            );
+        }
+        let remedy = "raise xx, yy and zz: the square of each other number is less than the product of the two \
+                      in its row and column, and flakes have some thickness";
+        ("xx, yy, zz, xy, xz, yz of a positive definite matrix".into(), remedy)
+    }
 }
 
 /// Matrices count as equal if their areas differ by less.

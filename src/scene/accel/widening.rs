@@ -12,21 +12,85 @@ use obvhs::bvh2::{Bvh2, node::Bvh2Node};
 
 /// Fills `tree` with the nodes and primitives of `binary`, whose leaves hold one primitive each.
 pub(super) fn widen(binary: &Bvh2, primitives: &[(Label, Primitive)], tree: &mut Tree) {
-    let mut widening =
-        Widening { binary, primitives, plans: vec![Plan::default(); binary.nodes.len()], tree };
-    widening.plan();
-    widening.build();
+    let plans = Planning { binary, primitives, plans: vec![Default::default(); binary.nodes.len()] }.run();
+    Widening { binary, primitives, plans, tree }.run();
 }
 
 /// What is best below a node of the binary tree.
 #[derive(Clone, Copy, Default)]
 struct Plan {
-    /// How many primitives it holds, if these are all flat.
+    /// It is a leaf of its own: one pack or one round primitive.
+    is_leaf: bool,
+    /// How many of so many children are below its first child; 0 if it is best as one of them itself.
+    first: [u8; WIDTH],
+}
+
+/// What planning needs to know of the nodes below.
+#[derive(Clone, Copy, Default)]
+struct Below {
+    /// How many primitives there are, if all are flat.
     flats: Option<u32>,
     /// Expected tests of all below as at most 1, 2, ... children of a wide node, times the root's area.
     cost: [f32; WIDTH],
-    /// How many of so many children are below its first child; 0 if it is best as one of them itself.
-    first: [u8; WIDTH],
+}
+
+/// Plans node by node, children first.
+struct Planning<'a> {
+    binary: &'a Bvh2,
+    primitives: &'a [(Label, Primitive)],
+    plans: Vec<(Plan, Below)>,
+}
+
+impl Planning<'_> {
+    /// Without recursion: a hostile mesh can make the tree deep.
+    fn run(mut self) -> Vec<Plan> {
+        let mut stack = vec![(0, false)];
+        while let Some((node, children_done)) = stack.pop() {
+            if children_done || self.binary.nodes[node].is_leaf() {
+                self.plans[node] = self.plan(node);
+            } else {
+                let [left, right] = children(self.binary, node);
+                stack.extend([(node, true), (left, false), (right, false)]);
+            }
+        }
+        self.plans.iter().map(|(plan, _)| *plan).collect()
+    }
+
+    fn plan(&self, node: usize) -> (Plan, Below) {
+        let (flats, area) = (self.flats(node), self.binary.nodes[node].aabb().half_area());
+        if self.binary.nodes[node].is_leaf() || flats.is_some_and(|count| count <= 4) {
+            return (Plan { is_leaf: true, ..Plan::default() }, Below { flats, cost: [area; WIDTH] });
+        }
+        let (mut plan, mut cost) = (Plan::default(), [0.0; WIDTH]);
+        for slots in 2..=WIDTH {
+            (cost[slots - 1], plan.first[slots - 1]) = self.split(node, slots);
+        }
+        // As a wide node it is tested itself; as soon as its parts are no dearer than that, they are better children.
+        let own = area + cost[WIDTH - 1];
+        for slots in 1..=WIDTH {
+            if slots == 1 || own < cost[slots - 1] {
+                (cost[slots - 1], plan.first[slots - 1]) = (own, 0);
+            }
+        }
+        (plan, Below { flats, cost })
+    }
+
+    /// The best way to share `slots` between the two children of `node`: its cost, and how many the first one has.
+    fn split(&self, node: usize, slots: usize) -> (f32, u8) {
+        let [left, right] = children(self.binary, node).map(|child| &self.plans[child].1.cost);
+        let cost = |first: usize| (left[first - 1] + right[slots - first - 1], first as u8);
+        (1..slots).map(cost).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
+    }
+
+    /// How many primitives are below `node`, if these are all flat.
+    fn flats(&self, node: usize) -> Option<u32> {
+        if self.binary.nodes[node].is_leaf() {
+            let is_flat = |number: u32| matches!(self.primitives[number as usize].1, Primitive::Flat(_));
+            return leaf(self.binary, node).all(is_flat).then_some(self.binary.nodes[node].prim_count);
+        }
+        let [left, right] = children(self.binary, node).map(|child| self.plans[child].1.flats);
+        Some(left? + right?)
+    }
 }
 
 /// The binary tree while it is turned into a wide one.
@@ -38,66 +102,7 @@ struct Widening<'a> {
 }
 
 impl Widening<'_> {
-    /// Children first, without recursion: a hostile mesh can make the tree deep.
-    fn plan(&mut self) {
-        let mut stack = vec![(0, false)];
-        while let Some((node, children_done)) = stack.pop() {
-            let [left, right] = self.children(node);
-            if children_done || self.binary.nodes[node].is_leaf() {
-                self.plans[node] = self.plan_of(node);
-            } else {
-                stack.extend([(node, true), (left, false), (right, false)]);
-            }
-        }
-    }
-
-    fn plan_of(&self, node: usize) -> Plan {
-        let (flats, area) = (self.flats(node), self.binary.nodes[node].aabb().half_area());
-        if self.is_leaf(node, flats) {
-            return Plan { flats, cost: [area; WIDTH], first: [0; WIDTH] };
-        }
-        let mut plan = Plan { flats, ..Plan::default() };
-        for slots in 2..=WIDTH {
-            (plan.cost[slots - 1], plan.first[slots - 1]) = self.split(node, slots);
-        }
-        // As a wide node it is tested itself; as soon as its parts are no dearer than that, they are better children.
-        let own = area + plan.cost[WIDTH - 1];
-        for slots in 1..=WIDTH {
-            if slots == 1 || own < plan.cost[slots - 1] {
-                (plan.cost[slots - 1], plan.first[slots - 1]) = (own, 0);
-            }
-        }
-        plan
-    }
-
-    /// The best way to share `slots` between the two children of `node`: its cost, and how many the first one has.
-    fn split(&self, node: usize, slots: usize) -> (f32, u8) {
-        let [left, right] = self.children(node).map(|child| &self.plans[child].cost);
-        let cost = |first: usize| (left[first - 1] + right[slots - first - 1], first as u8);
-        (1..slots).map(cost).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
-    }
-
-    fn children(&self, node: usize) -> [usize; 2] {
-        let first = self.binary.nodes[node].first_index as usize;
-        [first, first + 1]
-    }
-
-    /// How many primitives are below `node`, if these are all flat.
-    fn flats(&self, node: usize) -> Option<u32> {
-        if self.binary.nodes[node].is_leaf() {
-            let is_flat = |number: u32| matches!(self.primitives[number as usize].1, Primitive::Flat(_));
-            return leaf(self.binary, node).all(is_flat).then_some(self.binary.nodes[node].prim_count);
-        }
-        let [left, right] = self.children(node).map(|child| self.plans[child].flats);
-        Some(left? + right?)
-    }
-
-    /// A leaf of its own: one pack or one round primitive.
-    fn is_leaf(&self, node: usize, flats: Option<u32>) -> bool {
-        self.binary.nodes[node].is_leaf() || flats.is_some_and(|count| count <= 4)
-    }
-
-    fn build(mut self) {
+    fn run(mut self) {
         // Binary node, wide node that replaces it.
         let mut open = vec![(0, 0)];
         self.tree.nodes.push(Node::EMPTY);
@@ -119,7 +124,7 @@ impl Widening<'_> {
             match self.plans[node].first[slots - 1] as usize {
                 0 => found.push(node),
                 first => {
-                    let [left, right] = self.children(node);
+                    let [left, right] = children(self.binary, node);
                     stack.extend([(right, slots - first), (left, first)]);
                 }
             }
@@ -129,7 +134,7 @@ impl Widening<'_> {
 
     /// Makes room for what replaces `node`.
     fn reference(&mut self, node: usize) -> u32 {
-        if !self.is_leaf(node, self.plans[node].flats) {
+        if !self.plans[node].is_leaf {
             self.tree.nodes.push(Node::EMPTY);
             return INNER | (self.tree.nodes.len() - 1) as u32;
         }
@@ -150,11 +155,16 @@ impl Widening<'_> {
         while let Some(node) = stack.pop() {
             match self.binary.nodes[node].is_leaf() {
                 true => numbers.extend(leaf(self.binary, node)),
-                false => stack.extend(self.children(node)),
+                false => stack.extend(children(self.binary, node)),
             }
         }
         numbers
     }
+}
+
+fn children(binary: &Bvh2, node: usize) -> [usize; 2] {
+    let first = binary.nodes[node].first_index as usize;
+    [first, first + 1]
 }
 
 fn leaf(binary: &Bvh2, node: usize) -> impl Iterator<Item = u32> + '_ {
