@@ -25,10 +25,12 @@ pub enum Patch {
     },
 }
 
-/// A convex polygon.
+/// A convex polygon: a triangle or a parallelogram.
 #[derive(Clone, Debug)]
 pub struct Polygon {
-    corners: Vec<DVec3>,
+    /// A triangle lacks the last one. Millions of them are looked at where meshes lie in each other: no heap.
+    four: [DVec3; 4],
+    is_triangle: bool,
     normal: DVec3,
 }
 
@@ -46,7 +48,8 @@ impl Patch {
     /// What the rounding of a point of it is in proportion to, along the normal (m): nothing for a rectangle along the axes.
     pub fn skew(&self) -> f64 {
         match self {
-            Self::Flat(Polygon { corners, normal }) => {
+            Self::Flat(polygon) => {
+                let (corners, normal) = (polygon.corners(), polygon.normal);
                 let [along_u, along_v] =
                     [corners[1], corners[corners.len() - 1]].map(|corner| corner - corners[0]);
                 normal.abs().dot(along_u.abs() + along_v.abs())
@@ -97,52 +100,61 @@ fn are_along(a: [DVec3; 2], b: [DVec3; 2], reach: f64) -> bool {
 impl Polygon {
     fn of(flat: &Flat) -> Self {
         let [corner, u, v] = [flat.corner, flat.edge_u, flat.edge_v].map(|p| p.as_dvec3());
-        let mut corners = vec![corner, corner + u, corner + v];
-        if !flat.triangle {
-            corners.insert(2, corner + u + v);
-        }
-        Self { corners, normal: flat.normal.as_dvec3().normalize() }
+        let four = if flat.triangle {
+            [corner, corner + u, corner + v, corner]
+        } else {
+            [corner, corner + u, corner + u + v, corner + v]
+        };
+        Self { four, is_triangle: flat.triangle, normal: flat.normal.as_dvec3().normalize() }
+    }
+
+    fn corners(&self) -> &[DVec3] {
+        &self.four[..if self.is_triangle { 3 } else { 4 }]
     }
 
     fn centre(&self) -> DVec3 {
-        self.corners.iter().sum::<DVec3>() / self.corners.len() as f64
+        self.corners().iter().sum::<DVec3>() / self.corners().len() as f64
     }
 
     fn size(&self) -> f64 {
         let centre = self.centre();
-        self.corners.iter().map(|corner| corner.distance_squared(centre)).fold(0.0, f64::max)
+        self.corners().iter().map(|corner| corner.distance_squared(centre)).fold(0.0, f64::max)
     }
 
     /// See [`Patch::height_of`]. The plane of the larger one is known better.
     fn height_of(&self, other: &Self, reach: f64) -> Option<f64> {
         let facing = self.normal.dot(other.normal);
-        let (large, small, sign) =
-            if self.size() >= other.size() { (self, other, 1.0) } else { (other, self, -facing.signum()) };
-        let height = |corner: &DVec3| large.normal.dot(corner - large.corners[0]);
-        let is_far = |corner: &DVec3| height(corner).abs() > reach;
-        if facing.abs() < 0.5 || small.corners.iter().any(is_far) || !large.overlaps(small, reach) {
+        // Most pairs end here.
+        if facing.abs() < 0.5 {
             return None;
         }
-        Some(sign * small.corners.iter().map(height).sum::<f64>() / small.corners.len() as f64)
+        let (large, small, sign) =
+            if self.size() >= other.size() { (self, other, 1.0) } else { (other, self, -facing.signum()) };
+        let height = |corner: &DVec3| large.normal.dot(corner - large.four[0]);
+        if small.corners().iter().any(|corner| height(corner).abs() > reach) || !large.overlaps(small, reach)
+        {
+            return None;
+        }
+        Some(sign * small.corners().iter().map(height).sum::<f64>() / small.corners().len() as f64)
     }
 
     /// True if both have an area in common, seen along the normal and wider than `margin` metres: no edge separates them.
     fn overlaps(&self, other: &Self, margin: f64) -> bool {
-        let edges = |polygon: &Self| {
-            let corners = polygon.corners.clone();
-            let next = corners.clone().into_iter().cycle().skip(1);
-            corners.into_iter().zip(next).map(|(a, b)| b - a)
-        };
-        edges(self).chain(edges(other)).all(|edge| {
+        self.edges().chain(other.edges()).all(|edge| {
             let across = self.normal.cross(edge).normalize_or_zero();
             let [a, b] = [self, other].map(|polygon| polygon.extent(across));
             a[1].min(b[1]) - a[0].max(b[0]) > margin
         })
     }
 
+    fn edges(&self) -> impl Iterator<Item = DVec3> + '_ {
+        let next = self.corners().iter().cycle().skip(1);
+        self.corners().iter().zip(next).map(|(a, b)| b - a)
+    }
+
     /// Least and greatest coordinate along `axis`.
     fn extent(&self, axis: DVec3) -> [f64; 2] {
-        let along = self.corners.iter().map(|corner| axis.dot(*corner));
+        let along = self.corners().iter().map(|corner| axis.dot(*corner));
         along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
     }
 }

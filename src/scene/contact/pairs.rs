@@ -9,6 +9,7 @@ use obvhs::{
     aabb::Aabb,
     bvh2::{Bvh2, builder::build_bvh2},
 };
+use rayon::prelude::*;
 use std::time::Duration;
 
 /// The largest distance of touching faces, relative to coordinates: shapes that are farther apart are not compared.
@@ -64,7 +65,7 @@ pub(super) fn pairs(
         for &b in order[index + 1..].iter().take_while(meets) {
             let pair = [a.min(b), a.max(b)];
             if let Some(near) = Near::of(shapes, bounds, pair, farthest, closeness(pair)) {
-                near.add_touching(pair, &mut found);
+                found.extend(near.touching(pair));
             }
         }
     }
@@ -102,19 +103,19 @@ impl<'a> Near<'a> {
         })
     }
 
-    /// Adds the faces that touch to those `found`; the shapes are those of `pair`.
-    fn add_touching(&self, pair: [u32; 2], found: &mut Vec<Pair>) {
+    /// The faces that touch; the shapes are those of `pair`.
+    fn touching(&self, pair: [u32; 2]) -> Vec<Pair> {
         let [one, other] = self.shapes;
-        each_meeting(&self.within(one), &self.within(other), |a, b| {
-            let (Some(one), Some(other)) = (one.primitive(a).patch(), other.primitive(b).patch()) else {
-                return;
+        meeting(&self.within(one), &self.within(other), &|a, met| {
+            let Some(first) = one.primitive(a).patch() else { return Vec::new() };
+            let touch = |b: &usize| {
+                let patches = [first.clone(), other.primitive(*b).patch()?];
+                let reach = self.along_normal(&patches);
+                patches[0].height_of(&patches[1], reach)?;
+                Some(Pair { shapes: pair, primitives: [a, *b], patches, reach })
             };
-            let patches = [one, other];
-            let reach = self.along_normal(&patches);
-            if patches[0].height_of(&patches[1], reach).is_some() {
-                found.push(Pair { shapes: pair, primitives: [a, b], patches, reach });
-            }
-        });
+            met.iter().filter_map(touch).collect()
+        })
     }
 
     /// The primitives of a shape that reach into the common box.
@@ -137,26 +138,29 @@ impl<'a> Near<'a> {
     }
 }
 
-/// Calls `test` with every two primitives whose boxes meet.
-fn each_meeting(a: &[Boxed], b: &[Boxed], mut test: impl FnMut(usize, usize)) {
+/// What `find` finds of each primitive of `a` and those of `b` whose boxes meet its own, in the order of `a`.
+fn meeting(a: &[Boxed], b: &[Boxed], find: &(dyn Fn(usize, &[usize]) -> Vec<Pair> + Sync)) -> Vec<Pair> {
     const FEW: usize = 1 << 14;
     if a.len() * b.len() <= FEW {
-        for one in a {
-            let met = b.iter().filter(|other| one.bounds.intersect_aabb(&other.bounds));
-            met.for_each(|other| test(one.primitive, other.primitive));
-        }
-        return;
+        let of = |one: &Boxed| {
+            let met = b.iter().filter(|other| other.bounds.intersect_aabb(&one.bounds));
+            find(one.primitive, &met.map(|other| other.primitive).collect::<Vec<_>>())
+        };
+        return a.iter().flat_map(of).collect();
     }
     let tree = tree(b);
-    for one in a {
+    let of = |one: &Boxed| {
+        let mut met = Vec::new();
         tree.aabb_traverse(one.bounds, |tree, node| {
             let node = &tree.nodes[node as usize];
             let first = node.first_index as usize;
             let indices = &tree.primitive_indices[first..first + node.prim_count as usize];
-            indices.iter().for_each(|index| test(one.primitive, b[*index as usize].primitive));
+            met.extend(indices.iter().map(|index| b[*index as usize].primitive));
             true
         });
-    }
+        find(one.primitive, &met)
+    };
+    a.par_iter().flat_map_iter(of).collect()
 }
 
 fn tree(boxed: &[Boxed]) -> Bvh2 {
