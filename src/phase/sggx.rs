@@ -55,7 +55,7 @@ const ANY: [f64; 3] = [0.0, f64::INFINITY, 0.0];
 impl Sggx {
     pub(super) const TABLE: Table = table! {
         "Specular microflakes (Heitz et al. 2015): mirrors whose normals are distributed as those of an ellipsoid. The area that they show scales the medium's extinction.";
-        object("S", "volume", "A `gridvolume` of 6 channels: xx, yy, zz, xy, xz, yz of a positive definite matrix in the axes of the scene, or 0 where there are no flakes; n S n is the squared area seen along n. `to_world` moves the voxels and leaves the matrices as they are; an `instance` turns them.").required(),
+        object("S", "volume", "A `gridvolume` of 6 channels: xx, yy, zz, xy, xz, yz of a positive definite matrix, or 0 where there are no flakes; n S n is the squared area seen along n. `to_world` moves the voxels and leaves the matrices as they are; an `instance` turns them.").required(),
     };
 
     /// The same everywhere.
@@ -69,7 +69,11 @@ impl Sggx {
         for (voxel, numbers) in grid.voxels() {
             let matrix = turned(numbers, turn);
             if matrix != DMat3::ZERO {
-                lower(matrix, RANGE).ok_or(Unfit::Voxel(voxel, numbers))?;
+                lower(matrix, RANGE).ok_or_else(|| Unfit::Voxel {
+                    voxel,
+                    numbers,
+                    is_flat: is_flat(matrix),
+                })?;
             }
             (sum, count) = (sum + matrix, count + 1.0);
         }
@@ -156,30 +160,30 @@ impl Varying {
 /// Why a grid holds no flakes.
 #[derive(Debug)]
 enum Unfit {
-    /// Six numbers of a voxel are no positive definite matrix, or out of range.
-    Voxel([usize; 3], [f64; 6]),
+    /// Six numbers of a voxel are out of range, or, turned by an instance, no positive definite matrix.
+    Voxel { voxel: [usize; 3], numbers: [f64; 6], is_flat: bool },
     /// All are 0.
     Empty,
 }
 
 impl Unfit {
     fn refuse(self, location: &Location) -> Error {
-        let Self::Voxel([x, y, z], numbers) = self else {
+        let Self::Voxel { voxel: [x, y, z], numbers, is_flat } = self else {
             let remedy = "give a voxel a matrix, or remove the medium";
             return Error::new(location, "flakes in some voxel", "zeros in all of them", remedy);
         };
-        let (expected, remedy) = Self::expected(numbers);
+        let (expected, remedy) = Self::expected(numbers, is_flat);
         let found = format!("{:?} in the voxel ({x}, {y}, {z})", numbers.map(|number| number as f32));
         Error::new(location, expected, found, remedy)
     }
 
     /// In place of `numbers`, and how to get there.
-    fn expected(numbers: [f64; 6]) -> (String, &'static str) {
-        let [least, most, thinnest] = RANGE;
+    fn expected(numbers: [f64; 6], is_flat: bool) -> (String, &'static str) {
+        let [least, most, _] = RANGE;
         if !numbers.iter().all(|number| number.is_finite()) {
             return ("six numbers".into(), "correct the file");
         }
-        if lower(symmetric(numbers), [0.0, f64::INFINITY, thinnest]).is_some() {
+        if !is_flat {
             let expected = format!("xx, yy and zz of which the largest is between {least:e} and {most:e}");
             return (
                 expected,
@@ -187,7 +191,7 @@ impl Unfit {
             );
         }
         let remedy = "raise xx, yy and zz: the square of each other number is less than the product of the two \
-                      in its row and column, and flakes have some thickness";
+                      in its row and column, and flakes have some thickness, in instances too";
         ("xx, yy, zz, xy, xz, yz of a positive definite matrix".into(), remedy)
     }
 }
@@ -207,6 +211,11 @@ fn lower(matrix: DMat3, [least, most, thinnest]: [f64; 3]) -> Option<DMat3> {
     let f = pivot(z.z - c * c - e * e)?;
     let lower = DMat3::from_cols(DVec3::new(a, b, c), DVec3::new(0.0, d, e), DVec3::new(0.0, 0.0, f));
     (least..=most).contains(&largest).then_some(lower)
+}
+
+/// True of what is no positive definite matrix, or flakes without thickness.
+fn is_flat(matrix: DMat3) -> bool {
+    lower(matrix, [0.0, f64::INFINITY, RANGE[2]]).is_none()
 }
 
 /// The matrix of six numbers, in an instance.

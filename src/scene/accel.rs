@@ -28,10 +28,10 @@ pub struct Geometry {
 impl Geometry {
     /// Shapes keep their numbers: the index in `shapes`.
     pub fn build(shapes: Vec<Shape>) -> Self {
-        let of_shape = |(number, shape): (u32, &Shape)| -> Vec<(Label, Primitive)> {
-            (0..shape.primitive_count()).map(|i| ([number, i as u32], shape.primitive(i))).collect()
-        };
-        let primitives: Vec<_> = (0..).zip(&shapes).flat_map(of_shape).collect();
+        let mut primitives: Vec<(Label, Primitive)> = Vec::new();
+        for (number, shape) in (0..).zip(&shapes) {
+            primitives.extend((0..shape.primitive_count()).map(|i| ([number, i as u32], shape.primitive(i))));
+        }
         let tree = Tree::build(&primitives);
         Self { shapes, tree }
     }

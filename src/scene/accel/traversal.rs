@@ -117,7 +117,7 @@ impl Tree {
 
     /// In very deep trees: with as much room as it takes.
     #[inline(never)]
-    fn occluded_deep<const CURVED: bool>(&self, ray: &Ray) -> bool {
+    pub(super) fn occluded_deep<const CURVED: bool>(&self, ray: &Ray) -> bool {
         let mut room = 2 * SHALLOW;
         loop {
             match self.occluded_below::<CURVED>(ray, &mut vec![0; room]) {

@@ -13,8 +13,8 @@ use obvhs::{BvhBuildParams, aabb::Aabb, bvh2::builder::build_bvh2};
 use std::time::Duration;
 use wide::f32x8;
 
-/// Scenes that need at most this many tests (four flat primitives or one round one each) are a plain list: up to
-/// here it is faster than any hierarchy (measured: see the timing test).
+/// At most so many primitives are a plain list: up to here it is faster than any hierarchy (`cargo bench` times lists
+/// and trees).
 const LIST_LIMIT: usize = 12;
 
 /// What a child reference points to, in its top two bits; the index is below them.
@@ -50,9 +50,9 @@ pub(super) enum Form {
     List,
     /// From node to node.
     Nodes,
-    /// The same with curved primitives, which are rare: others should not pay for the test.
+    /// [`Self::List`], some of it curved: these are rare, and others should not pay for the test.
     CurvedList,
-    /// The same from node to node.
+    /// [`Self::Nodes`], some of it curved.
     CurvedNodes,
 }
 

@@ -8,7 +8,7 @@ use super::{
     tree::{FLATS, INNER, KIND, Label, Node, Tree, WIDTH},
 };
 use crate::shape::Primitive;
-use obvhs::bvh2::{Bvh2, node::Bvh2Node};
+use obvhs::bvh2::Bvh2;
 
 /// Fills `tree` with the nodes and primitives of `binary`, whose leaves hold one primitive each.
 pub(super) fn widen(binary: &Bvh2, primitives: &[(Label, Primitive)], tree: &mut Tree) {
@@ -21,7 +21,8 @@ pub(super) fn widen(binary: &Bvh2, primitives: &[(Label, Primitive)], tree: &mut
 struct Plan {
     /// It is a leaf of its own: one pack or one round primitive.
     is_leaf: bool,
-    /// How many of so many children are below its first child; 0 if it is best as one of them itself.
+    /// Where it may become n children of a wide node, the number `first[n - 1]` of these are below its first child; 0 if it
+    /// had best be a child itself.
     first: [u8; WIDTH],
 }
 
@@ -61,14 +62,14 @@ impl Planning<'_> {
         if self.binary.nodes[node].is_leaf() || flats.is_some_and(|count| count <= 4) {
             return (Plan { is_leaf: true, ..Plan::default() }, Below { flats, cost: [area; WIDTH] });
         }
-        let (mut plan, mut cost) = (Plan::default(), [0.0; WIDTH]);
+        let (mut plan, mut cost) = (Plan::default(), [f32::INFINITY; WIDTH]);
         for slots in 2..=WIDTH {
             (cost[slots - 1], plan.first[slots - 1]) = self.split(node, slots);
         }
         // As a wide node it is tested itself; as soon as its parts are no dearer than that, they are better children.
         let own = area + cost[WIDTH - 1];
         for slots in 1..=WIDTH {
-            if slots == 1 || own < cost[slots - 1] {
+            if own < cost[slots - 1] {
                 (cost[slots - 1], plan.first[slots - 1]) = (own, 0);
             }
         }
@@ -85,8 +86,8 @@ impl Planning<'_> {
     /// How many primitives are below `node`, if these are all flat.
     fn flats(&self, node: usize) -> Option<u32> {
         if self.binary.nodes[node].is_leaf() {
-            let is_flat = |number: u32| matches!(self.primitives[number as usize].1, Primitive::Flat(_));
-            return leaf(self.binary, node).all(is_flat).then_some(self.binary.nodes[node].prim_count);
+            let (_, primitive) = &self.primitives[leaf(self.binary, node) as usize];
+            return matches!(primitive, Primitive::Flat(_)).then_some(1);
         }
         let [left, right] = children(self.binary, node).map(|child| self.plans[child].1.flats);
         Some(left? + right?)
@@ -154,7 +155,7 @@ impl Widening<'_> {
         let (mut numbers, mut stack) = (Vec::new(), vec![node]);
         while let Some(node) = stack.pop() {
             match self.binary.nodes[node].is_leaf() {
-                true => numbers.extend(leaf(self.binary, node)),
+                true => numbers.push(leaf(self.binary, node)),
                 false => stack.extend(children(self.binary, node)),
             }
         }
@@ -167,8 +168,7 @@ fn children(binary: &Bvh2, node: usize) -> [usize; 2] {
     [first, first + 1]
 }
 
-fn leaf(binary: &Bvh2, node: usize) -> impl Iterator<Item = u32> + '_ {
-    let node: &Bvh2Node = &binary.nodes[node];
-    let first = node.first_index as usize;
-    binary.primitive_indices[first..first + node.prim_count as usize].iter().copied()
+/// The primitive of a leaf.
+fn leaf(binary: &Bvh2, node: usize) -> u32 {
+    binary.primitive_indices[binary.nodes[node].first_index as usize]
 }

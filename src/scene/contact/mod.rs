@@ -5,7 +5,6 @@
 //! outermost first. Rays cannot find that order, as they step over whatever lies within the rounding of a hit. So the
 //! gap is made. Solids shrink where they touch something, by a few hundred roundings of positions. Of two open faces,
 //! the one to be met first moves. Everything else then sees an ordinary scene.
-//! open faces the one that should be met first is moved. Everything else then sees an ordinary scene.
 //!
 //! Where that order does not decide, index-matched faces come first, then those that scatter and transmit, then
 //! emitting, then opaque ones. Of two alike, the first in the file is nearer to the camera, with a warning.

@@ -138,7 +138,7 @@ impl<'a> Near<'a> {
     }
 }
 
-/// What `find` finds of each primitive of `a` and those of `b` whose boxes meet its own, in the order of `a`.
+/// What `find` finds of each primitive of `a` and some of `b`, in the order of `a`: at least those whose boxes meet its own.
 fn meeting(a: &[Boxed], b: &[Boxed], find: &(dyn Fn(usize, &[usize]) -> Vec<Pair> + Sync)) -> Vec<Pair> {
     const FEW: usize = 1 << 14;
     if a.len() * b.len() <= FEW {

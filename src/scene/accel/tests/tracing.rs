@@ -113,5 +113,6 @@ fn deep_trees_lose_nothing() {
         assert!(geometry.tree.closest_below::<false>(&ray, &mut [(0.0, 0); 64]).is_err(), "not deep enough");
         assert_eq!(found.map(|z| (z - 1.0).abs() < 1e-5), is_hit.then_some(true));
         assert_eq!(geometry.occluded(&ray), is_hit);
+        assert_eq!(geometry.tree.occluded_deep::<false>(&ray), is_hit);
     }
 }
