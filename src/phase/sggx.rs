@@ -187,7 +187,7 @@ impl Unfit {
             let expected = format!("xx, yy and zz of which the largest is between {least:e} and {most:e}");
             return (
                 expected,
-                "give areas around 1, and scale the medium's extinction by the root of the rest",
+                "multiply the matrices by a number, and divide the medium's extinction by its square root",
             );
         }
         let remedy = "raise xx, yy and zz: the square of each other number is less than the product of the two \
