@@ -59,7 +59,6 @@ struct Link {
 
 impl Link {
     /// |cos| at the sender, if the light that it sends does not contain it: for sides.
-    #[inline]
     fn cosine_for(&self, sent: Bins) -> f32 {
         if matches!(sent, Bins::Sides(_)) { self.cosine } else { 1.0 }
     }
@@ -73,6 +72,17 @@ impl Link {
         let own = self.distance * self.distance;
         (towards, own / squared.max(0.25 * own))
     }
+}
+
+/// What one line brings to one element: the same for every bounce.
+struct Arrival {
+    sender: u32,
+    /// The bin of what the sender sends.
+    leaves: u16,
+    /// The bin of what the element receives.
+    arrives: u16,
+    /// What is received there (W/m^2), over what is sent.
+    part: Spectrum,
 }
 
 /// All light there is.
@@ -118,8 +128,7 @@ pub(super) fn aims(scene: &Scene, elements: &Elements, number: usize) -> Vec<Aim
         let mut chances = BTreeMap::new();
         for link in elements.hierarchy.upwards(*node).flat_map(|node| &links[node as usize]) {
             let cosine = elements.all[index].cosine(link.towards);
-            *chances.entry(link.sender).or_insert(0.0) +=
-                state.carried(link, link.towards).luminance() * cosine;
+            *chances.entry(link.sender).or_insert(0.0) += state.carried(link).luminance() * cosine;
         }
         let aim = |(sender, chance): (u32, f32)| {
             (chance > 0.0).then(|| Aim { probability: chance, ..boxes[sender as usize] })
@@ -191,21 +200,21 @@ impl<'a> State<'a> {
         self.sent = all;
     }
 
-    /// Perpendicular irradiance (W/m^2) by a link whose sender is in unit direction `towards`.
-    #[inline]
-    fn carried(&self, link: &Link, towards: Vec3) -> Spectrum {
+    /// Perpendicular irradiance (W/m^2) at the end of a line.
+    fn carried(&self, link: &Link) -> Spectrum {
         let sent = &self.sent[link.sender as usize];
-        sent.at(-towards) * link.part * link.cosine_for(sent.bins)
+        sent.at(-link.towards) * link.part * link.cosine_for(sent.bins)
     }
 
     /// Carries light until it settles or has scattered `most` times.
     fn settle(&mut self, links: &[Vec<Link>], most: u32) {
-        self.balance(links);
+        let arrivals = self.arrivals(links);
+        self.balance(&arrivals);
         let mut all: Vec<_> = self.direct.iter().map(|direct| Distribution::dark(direct.bins)).collect();
         self.values.clone_from(&all);
         for bounce in 0..most.min(MOST_BOUNCES) {
             self.pull();
-            let mut more = self.carry(links);
+            let mut more = self.carry(&arrivals);
             if bounce == 0 {
                 // The light of emitting elements and that of lamps arrive for the first time.
                 more.iter_mut().zip(&self.direct).for_each(|(more, direct)| more.add(direct));
@@ -221,25 +230,35 @@ impl<'a> State<'a> {
         self.pull();
     }
 
-    /// What comes to each element by `links`.
-    fn incoming(&self, links: &[Vec<Link>]) -> Vec<Distribution> {
+    /// What `links` bring to each element. Light to a cluster is pushed down to its elements.
+    fn arrivals(&self, links: &[Vec<Link>]) -> Vec<Vec<Arrival>> {
         let hierarchy = &self.elements.hierarchy;
-        let receive = |(index, node): (usize, &u32)| {
-            let mut incoming = Distribution::dark(self.values[index].bins);
-            for above in hierarchy.upwards(*node) {
-                for link in &links[above as usize] {
-                    let (towards, more) = self.pushed(link, above, *node);
-                    incoming.receive(towards, self.carried(link, towards) * more);
-                }
-            }
-            incoming.scaled(self.coming[index])
+        let of = |(index, node): (usize, &u32)| {
+            let lines = hierarchy.upwards(*node).flat_map(|above| {
+                links[above as usize].iter().map(move |link| (link, self.pushed(link, above, *node)))
+            });
+            let mut own: Vec<_> =
+                lines.map(|(link, (towards, more))| self.arrival(index, link, towards, more)).collect();
+            // There are many millions.
+            own.shrink_to_fit();
+            own
         };
-        hierarchy.elements.par_iter().enumerate().map(receive).collect()
+        hierarchy.elements.par_iter().enumerate().map(of).collect()
+    }
+
+    /// What comes to an element by one line from unit `towards`, `more` times as much as at the line's end.
+    fn arrival(&self, element: usize, link: &Link, towards: Vec3, more: f32) -> Arrival {
+        let [sent, own] = [self.elements.bins[link.sender as usize], self.elements.all[element].source.bins];
+        Arrival {
+            sender: link.sender,
+            leaves: sent.of(-towards) as u16,
+            arrives: own.of(towards) as u16,
+            part: link.part * (link.cosine_for(sent) * own.cosine(towards) * more),
+        }
     }
 
     /// The unit direction from which a link to the cluster `above` lights its part `node`, and the irradiance there
-    /// over that at the line's end. Light to a cluster is pushed down at once. Each part has its own direction to the
-    /// sender: collimated light must not be turned.
+    /// over that at the line's end. Each part has its own direction to the sender: collimated light must not be turned.
     fn pushed(&self, link: &Link, above: u32, node: u32) -> (Vec3, f32) {
         if above == node {
             return (link.towards, 1.0);
@@ -247,20 +266,33 @@ impl<'a> State<'a> {
         link.seen_from(self.elements.hierarchy.nodes[node as usize].centre())
     }
 
+    /// What comes to each element.
+    fn incoming(&self, arrivals: &[Vec<Arrival>]) -> Vec<Distribution> {
+        let receive = |(index, own): (usize, &Vec<Arrival>)| {
+            let mut incoming = Distribution::dark(self.elements.all[index].source.bins);
+            for Arrival { sender, leaves, arrives, part } in own {
+                let sent = self.sent[*sender as usize].values[usize::from(*leaves)];
+                incoming.values[usize::from(*arrives)] += sent * *part;
+            }
+            incoming.scaled(self.coming[index])
+        };
+        arrivals.par_iter().enumerate().map(receive).collect()
+    }
+
     /// Corrects links that have too few lines in some directions and too many in others. The part of an element's light
     /// that arrives is, for each bin, the one that the element's own lines measure: a direction that brought more would
     /// keep its light in thick media for ever. If all elements are equally bright, an element receives what its own
     /// lines measure. [`State::carry`] makes up for bins that no link serves.
-    fn balance(&mut self, links: &[Vec<Link>]) {
+    fn balance(&mut self, arrivals: &[Vec<Arrival>]) {
         self.coming.fill(Spectrum::ONE);
-        self.leaving = self.leaving(links);
-        self.coming = self.coming(links);
-        self.leaving = self.leaving(links);
+        self.leaving = self.leaving(arrivals);
+        self.coming = self.coming(arrivals);
+        self.leaving = self.leaving(arrivals);
     }
 
     /// For each bin of each element: the light due to arrive elsewhere over the light that links bring there.
-    fn leaving(&self, links: &[Vec<Link>]) -> Vec<Distribution> {
-        let (delivered, hierarchy) = (self.delivered(links), &self.elements.hierarchy);
+    fn leaving(&self, arrivals: &[Vec<Arrival>]) -> Vec<Distribution> {
+        let (delivered, hierarchy) = (self.delivered(arrivals), &self.elements.hierarchy);
         let over = |(node, meets): (&u32, &Distribution)| {
             let mut brought = Distribution::dark(meets.bins);
             hierarchy.upwards(*node).for_each(|node| brought.part_of(&delivered[node as usize]));
@@ -271,46 +303,32 @@ impl<'a> State<'a> {
     }
 
     /// For each element, with all elements equally bright: the light due over the light that links bring.
-    fn coming(&mut self, links: &[Vec<Link>]) -> Vec<Spectrum> {
+    fn coming(&mut self, arrivals: &[Vec<Arrival>]) -> Vec<Spectrum> {
         let even = self.meets.iter().map(|meets| Distribution::even(meets.bins)).collect();
         let (values, emits) = (std::mem::replace(&mut self.values, even), std::mem::take(&mut self.emits));
         self.pull();
-        let incoming = self.incoming(links);
+        let incoming = self.incoming(arrivals);
         (self.values, self.emits) = (values, emits);
         let found: Vec<Spectrum> = incoming.iter().map(Distribution::sum).collect();
         balance::coming(&self.elements.hierarchy, &self.meets, &found)
     }
 
-    /// The power (W) that `links` deliver per unit that each node sends into each bin.
-    fn delivered(&self, links: &[Vec<Link>]) -> Vec<Distribution> {
-        let mut of_senders = vec![Vec::new(); links.len()];
-        for (receiver, links) in links.iter().enumerate() {
-            links.iter().for_each(|link| of_senders[link.sender as usize].push((receiver as u32, link)));
+    /// The power (W) that arrives per unit that each node sends into each bin.
+    fn delivered(&self, arrivals: &[Vec<Arrival>]) -> Vec<Distribution> {
+        let mut all: Vec<_> = self.elements.bins.iter().map(|bins| Distribution::dark(*bins)).collect();
+        for (index, own) in arrivals.iter().enumerate() {
+            let measure = self.elements.hierarchy.node(index as u32).measure * self.coming[index];
+            for Arrival { sender, leaves, arrives, part } in own {
+                let received = *part * self.elements.all[index].cosine_of(usize::from(*arrives));
+                all[*sender as usize].values[usize::from(*leaves)] += measure * received;
+            }
         }
-        let sum = |(bins, links): (&Bins, &Vec<(u32, &Link)>)| {
-            let mut all = Distribution::dark(*bins);
-            links.iter().for_each(|(receiver, link)| self.deliver(link, *receiver, &mut all));
-            all
-        };
-        self.elements.bins.par_iter().zip(&of_senders).map(sum).collect()
-    }
-
-    /// Adds what comes by one link to all elements of its `receiver`.
-    fn deliver(&self, link: &Link, receiver: u32, all: &mut Distribution) {
-        let hierarchy = &self.elements.hierarchy;
-        let unit = link.part * link.cosine_for(all.bins);
-        for element in hierarchy.nodes[receiver as usize].elements.clone() {
-            let (towards, more) = self.pushed(link, receiver, hierarchy.elements[element as usize]);
-            let received = self.elements.all[element as usize].receives(towards) * more;
-            let measure = hierarchy.node(element).measure * self.coming[element as usize];
-            let bin = all.bins.of(-towards);
-            all.values[bin] += unit * measure * received;
-        }
+        all
     }
 
     /// The light that elements scatter after links carried it, scaled so that all light that meets something arrives.
-    fn carry(&self, links: &[Vec<Link>]) -> Vec<Distribution> {
-        let incoming = self.incoming(links);
+    fn carry(&self, arrivals: &[Vec<Arrival>]) -> Vec<Distribution> {
+        let incoming = self.incoming(arrivals);
         let scale = distribution::over(self.arriving(), self.arrived(&incoming));
         let scatter =
             |(element, incoming): (&Element, Distribution)| element.scatter(&incoming.scaled(scale));

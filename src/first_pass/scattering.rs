@@ -57,11 +57,6 @@ impl Element {
         cosine_of(self.normal, self.source.bins, bin)
     }
 
-    /// The part of perpendicular irradiance from unit `towards` that comes.
-    pub(super) fn receives(&self, towards: Vec3) -> f32 {
-        self.source.bins.cosine(towards) * self.cosine_of(self.source.bins.of(towards))
-    }
-
     /// The power that comes (W) for each of its measure.
     pub(super) fn received(&self, incoming: &Distribution) -> Spectrum {
         incoming.values.iter().enumerate().map(|(bin, value)| *value * self.cosine_of(bin)).sum()

@@ -1,4 +1,4 @@
-//! Angles of directions, where a map is looked up by them and the system's functions would take most of the time.
+//! Angles of directions, where maps and cells are looked up by them and the system's functions would take most of the time.
 
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 

@@ -1,6 +1,6 @@
 //! From the unit square to discs, hemispheres, spheres, cones and triangles, with densities.
 
-use super::{Vec2, Vec3, vec2, vec3};
+use super::{Vec2, Vec3, angle, vec2, vec3};
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 /// Density of `to_sphere` (1/sr).
@@ -26,7 +26,7 @@ pub fn to_disk(u: Vec2) -> Vec2 {
 pub fn from_disk(p: Vec2) -> Vec2 {
     let r = p.length().min(1.0);
     // Angle from the x axis in [-pi/4, 7 pi/4), in quarter turns: which side of the square.
-    let turn = p.y.atan2(p.x) / FRAC_PI_2;
+    let turn = angle::atan2(p.y, p.x) / FRAC_PI_2;
     let side = (turn + 0.5).floor();
     let across = 2.0 * (turn - side) * r;
     let p = match side as i32 {
@@ -76,7 +76,7 @@ pub fn to_sphere(u: Vec2) -> Vec3 {
 /// The inverse of [`to_sphere`].
 #[inline]
 pub fn from_sphere(direction: Vec3) -> Vec2 {
-    let turn = direction.y.atan2(direction.x) / TAU;
+    let turn = angle::atan2(direction.y, direction.x) / TAU;
     let turn = if turn < 0.0 { turn + 1.0 } else { turn };
     vec2(0.5 - 0.5 * direction.z, turn).clamp(Vec2::ZERO, Vec2::splat(1.0 - f32::EPSILON))
 }
