@@ -6,6 +6,7 @@ use crate::common::{
     pieces::*,
 };
 use serde_json::{Value, json};
+use std::sync::LazyLock;
 use tyndall::{
     math::Spectrum,
     passes::{Settings, budget::Budget},
@@ -49,7 +50,7 @@ const SEEDS: u64 = 16;
 const TIMES: usize = 16;
 
 /// The mean of images of scenes that stand still, at times that lie evenly.
-fn still() -> Sample {
+static STILL: LazyLock<Sample> = LazyLock::new(|| {
     let at = |k: usize| (k as f64 + 0.5) / TIMES as f64;
     let stages: Vec<Stage> = (0..TIMES).map(|k| Stage::new(&scene_open(at(k), at(k)))).collect();
     let image = |seed: u64| -> Vec<Spectrum> {
@@ -58,11 +59,11 @@ fn still() -> Sample {
         sum.iter().map(|sum| *sum / TIMES as f32).collect()
     };
     Sample::of(&(0..SEEDS).map(image).collect::<Vec<_>>(), 8)
-}
+});
 
 #[test]
 fn the_image_is_the_mean_over_the_exposure() {
-    let (mut claims, still) = (Claims::new(), still());
+    let mut claims = Claims::new();
     let mut stage = Stage::new(&scene_open(0.0, 1.0));
     let learnt = Effort { learnt_starts: true, ..Effort::default() };
     let guided = Effort { guide: Guiding::Always, ..learnt };
@@ -78,7 +79,7 @@ fn the_image_is_the_mean_over_the_exposure() {
         stage.setup.integrator.options.effort = effort;
         let first = 1000 * (number as u64 + 1);
         let images = stage.renders(strategies, 64, first..first + SEEDS);
-        claims.equal(name, &Sample::of(&images, stage.width()), &still);
+        claims.equal(name, &Sample::of(&images, stage.width()), &STILL);
     }
     claims.settle();
 }
@@ -96,6 +97,6 @@ fn pixels_that_end_sooner_see_all_of_the_exposure() {
             .pixels
     };
     let images: Vec<_> = (0..SEEDS).map(image).collect();
-    claims.equal("to a precision", &Sample::of(&images, stage.width()), &still());
+    claims.equal("to a precision", &Sample::of(&images, stage.width()), &STILL);
     claims.settle();
 }
