@@ -15,7 +15,7 @@ use crate::{
     math::{Bounds, Frame, Spectrum, SpectrumExt, Vec3, vec3},
     medium::MediumIndex,
     sampling::{Stream, stream::Purpose},
-    scene::{Scene, lights::Light, media::Boundary},
+    scene::{Scene, media::Boundary},
     shape::SurfacePoint,
     transport::{Interaction, profiles::Everything},
 };
@@ -231,21 +231,13 @@ fn extent(scene: &Scene, medium: MediumIndex) -> Option<Bounds> {
     };
     let inside = of(|boundary| boundary.interior).map(|(_, shape)| shape.bounds()).reduce(Bounds::union);
     let is_around = of(|boundary| boundary.exterior).next().is_some() || inside.is_none();
-    let shapes = if is_around { around(scene) } else { inside? };
+    let shapes = if is_around { scene.bounds() } else { inside? };
     let bounds = match scene.media[medium.0 as usize].extent() {
         Some(own) if shapes.is_finite() => own.common(shapes)?,
         Some(own) => own,
         None => shapes,
     };
     (bounds.is_finite() && bounds.size().min_element() > 0.0).then_some(bounds)
-}
-
-/// The box around all shapes, the camera and lamps.
-fn around(scene: &Scene) -> Bounds {
-    let is_lamp = |light: &&Light| matches!(light.emitter.kind, Kind::Point(_) | Kind::Beam(_));
-    let lamps = scene.lights.all.iter().filter(is_lamp).map(|light| light.position);
-    let points = lamps.chain([scene.sensor.position()]).map(Bounds::of);
-    points.fold(scene.geometry.bounds(), Bounds::union)
 }
 
 /// About `number` points in `medium`, chosen from uniform points of a box: more where it is denser.

@@ -21,13 +21,14 @@ mod unseen;
 
 use crate::{
     bsdf::{Bsdf, BsdfModel},
-    math::{DVec3, Detail, Spectrum, Uv, Vec3},
+    emitter::Kind,
+    math::{Bounds, DVec3, Detail, Spectrum, Uv, Vec3},
     medium::Medium,
     sensor::{Crop, Sensor},
     shape::{ShapeModel as _, SurfacePoint},
 };
 use accel::Geometry;
-use lights::Lights;
+use lights::{Light, Lights};
 use media::MediaMap;
 pub use memo::{Kept, Memo};
 pub(crate) use sections::TABLE;
@@ -60,6 +61,14 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The box around all shapes, the camera and lamps without a surface.
+    pub fn bounds(&self) -> Bounds {
+        let is_lamp = |light: &&Light| matches!(light.emitter.kind, Kind::Point(_) | Kind::Beam(_));
+        let lamps = self.lights.all.iter().filter(is_lamp).map(|light| light.position);
+        let points = lamps.chain([self.sensor.position()]).map(Bounds::of);
+        points.fold(self.geometry.bounds(), Bounds::union)
+    }
+
     /// The properties of the surface of `shape`.
     #[inline]
     pub fn surface(&self, shape: u32) -> &Surface {

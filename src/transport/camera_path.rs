@@ -83,6 +83,7 @@ pub(super) fn depart<P: Profile>(
         others_before_segment: P::MisSums::none(),
         pdf_over_hero: P::Channels::splat(1.0),
         pending: Pending::NONE,
+        left: estimator.thinning.begun(position),
     }
 }
 

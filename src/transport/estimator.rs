@@ -7,6 +7,7 @@ use super::{
     profile::Profile,
     roulette::Roulette,
     strategy::StrategyKind,
+    thinning::Thinning,
 };
 use crate::{
     guide::{Guide, solution::Ending},
@@ -41,6 +42,8 @@ pub struct Estimator<'a, P: Profile> {
     pub(super) survival: Survival,
     /// and as actually done.
     pub(super) roulette: Roulette,
+    /// Russian roulette of walks that are long or far away.
+    pub(super) thinning: Thinning,
     pub(super) connections_per_vertex: u32,
     pub(super) connections: Connections,
     /// Probability that a light vertex is kept for connections.

@@ -29,7 +29,7 @@ impl Roulette {
     /// The roulette of `estimator`, whose camera subpaths run alone.
     pub fn alone<P: Profile>(estimator: &mut Estimator<'_, P>) -> Self {
         let asked = estimator.roulette;
-        // In endless fog walks must not get longer, see `walk::thinned`.
+        // In endless fog walks are long enough.
         let may_be_late = !estimator.scene.is_endless();
         let is_late = may_be_late
             && (asked == Self::AtOnce(Survival::FourthRoot) || Lengths::of(estimator).are_worth_it());

@@ -47,13 +47,8 @@ pub(super) fn trace<P: Profile>(
     let Some(start) = begin(estimator, stream) else { return };
     observer.emit(&start, hero);
     let departure = depart(estimator, &start);
-    let kind = Kind {
-        transport: Transport::Importance,
-        hero,
-        max_edges: estimator.max_edges.saturating_sub(1),
-        roulette: estimator.roulette,
-        guide: estimator.guide.as_deref(),
-    };
+    let max_edges = estimator.max_edges.saturating_sub(1);
+    let kind = Kind { transport: Transport::Importance, max_edges, ..Kind::of_camera(estimator, hero) };
     let mut light = LightPath::new(estimator, cache, observer, start, hero);
     if estimator.starts_seen() {
         let aperture = scene.sensor.sample_aperture(stream);
@@ -108,6 +103,7 @@ pub(super) fn depart<P: Profile>(
         ),
         pdf_over_hero: P::Channels::splat(1.0),
         pending: Pending::NONE,
+        left: estimator.thinning.begun(start.position()),
     }
 }
 

@@ -86,6 +86,7 @@ mod segment;
 pub mod strategy;
 #[cfg(test)]
 mod tests;
+mod thinning;
 mod vertex;
 mod walk;
 
@@ -119,6 +120,7 @@ use estimator::Counts;
 use manifold::Manifold;
 use observer::{Meeting, Observer};
 use roulette::Roulette;
+use thinning::Thinning;
 
 /// Most vertices in the cache of a block, on average: it has to fit the processor's caches.
 const CACHE_VERTICES: f32 = 16_384.0;
@@ -155,6 +157,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
             heuristic,
             survival: effort.survival,
             roulette: Roulette::AtOnce(effort.survival),
+            thinning: Thinning::of(scene),
             connections_per_vertex: 0,
             connections,
             keep: 0.0,

@@ -12,6 +12,7 @@ use super::{
     roulette::{Pending, Roulette},
     segment::{EmitterCrossing, FlightState, FreeFlight, Passed, Segment, sample_free_flight},
     strategy::StrategyKind,
+    thinning::Thinning,
     vertex::{Subpath, Vertex},
 };
 use crate::{
@@ -52,6 +53,8 @@ pub(super) struct Departure<S: MisSums> {
     pub pdf_over_hero: S::Channels,
     /// The roulette of this vertex, if it is drawn at the next one.
     pub pending: Pending,
+    /// The part of all walks that [`Thinning`] has let come this far.
+    pub left: f32,
 }
 
 impl<S: MisSums> Departure<S> {
@@ -114,6 +117,8 @@ pub(super) struct Kind<'a> {
     pub max_edges: u32,
     /// Its Russian roulette.
     pub roulette: Roulette,
+    /// Its Russian roulette where it is long or far away.
+    pub thinning: &'a Thinning,
     /// The guide that it follows.
     pub guide: Option<&'a Guide>,
 }
@@ -122,8 +127,9 @@ impl<'a> Kind<'a> {
     /// A camera subpath of channel `hero`.
     #[inline]
     pub(super) fn of_camera<P: Profile>(estimator: &'a Estimator<'_, P>, hero: usize) -> Self {
-        let Estimator { max_edges, roulette, .. } = *estimator;
-        Self { transport: Transport::Radiance, hero, max_edges, roulette, guide: estimator.guide.as_deref() }
+        let Estimator { max_edges, roulette, ref thinning, .. } = *estimator;
+        let guide = estimator.guide.as_deref();
+        Self { transport: Transport::Radiance, hero, max_edges, roulette, thinning, guide }
     }
 }
 
@@ -178,24 +184,10 @@ pub(super) fn go_on<P: Profile>(
         return None;
     }
     let next = scatter::<P>(scene, kind, &vertex, stream)?;
-    if vertex.subpath.edges < LONG { Some(next) } else { thinned(scene, next, stream) }
-}
-
-/// Walks of more segments face Russian roulette in endless fog, which walks of albedo 1 would never leave.
-const LONG: u32 = 100_000;
-/// Walks of more segments face it elsewhere too; in a white ball 6,000 mean free paths across, these are 1 in 50.
-const LONGEST: u32 = 10_000_000;
-
-/// Russian roulette that no density contains: it is the same for all strategies. For n > `LONG` segments its factor is
-/// n / `LONG`; in endless fog the contribution of a path of n segments falls faster than this rises.
-#[cold]
-fn thinned<S: MisSums>(scene: &Scene, next: Departure<S>, stream: &mut Stream) -> Option<Departure<S>> {
-    if next.edges < LONGEST && !scene.is_endless() {
+    if kind.thinning.spares(departure.left, &next) {
         return Some(next);
     }
-    let survival = next.edges as f32 / (next.edges + 1) as f32;
-    let throughput = next.throughput / survival;
-    (stream.uniform() < survival).then_some(Departure { throughput, ..next })
+    kind.thinning.thin(departure.left, next, stream)
 }
 
 /// Where a flight arrives, as far as densities depend on it.
@@ -360,6 +352,7 @@ pub(super) fn set_out<P: Profile>(
             .scaled(vertex.cosine::<P>(scene, scattered.direction) * subpath.inv_pdf),
         pdf_over_hero: subpath.pdf_over_hero,
         pending: vertex.pending,
+        left: 1.0,
     }
 }
 

@@ -23,6 +23,7 @@ use crate::{
         observer::Sum,
         profile::Profile,
         segment::{FlightState, FreeFlight, SegmentTransmittance},
+        thinning::Thinning,
         vertex::{Subpath, Vertex},
         walk::{Arrival, Departure, Kind, Visitor, arrive, land, scatter::ScatterSample, set_out},
     },
@@ -197,8 +198,16 @@ impl Lead<'_> {
     ) -> Led<P::MisSums> {
         let scene = self.reference.scene;
         let Reference { roulette, ref guide, .. } = *self.reference;
+        let thinning = &Thinning::of(scene);
         let guide = guide.as_deref();
-        let kind = Kind { transport: self.transport, hero: self.hero, max_edges: u32::MAX, roulette, guide };
+        let kind = Kind {
+            transport: self.transport,
+            hero: self.hero,
+            max_edges: u32::MAX,
+            roulette,
+            thinning,
+            guide,
+        };
         let mut led = Led { vertices: Vec::new(), end: None };
         if let [first, second, ..] = self.nodes.as_slice() {
             departure.ray.direction = first.towards(second).as_vec3();
