@@ -76,6 +76,7 @@ impl Link {
 
 /// What one line brings to one element: the same for every bounce.
 struct Arrival {
+    /// The node that light comes from.
     sender: u32,
     /// The bin of what the sender sends.
     leaves: u16,
@@ -239,7 +240,7 @@ impl<'a> State<'a> {
             });
             let mut own: Vec<_> =
                 lines.map(|(link, (towards, more))| self.arrival(index, link, towards, more)).collect();
-            // There are many millions.
+            // There are millions.
             own.shrink_to_fit();
             own
         };

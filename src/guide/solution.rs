@@ -9,6 +9,7 @@ use crate::{
     math::{Frame, Spectrum, Vec3, warp},
     sampling::Stream,
 };
+use std::sync::Arc;
 
 /// A place that is looked at.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +39,8 @@ impl Place {
 /// What paths end in.
 #[derive(Clone, Debug)]
 pub struct Ending {
-    /// What is scattered everywhere.
-    pub found: Found,
+    /// What is scattered everywhere; the same however it is seen.
+    pub found: Arc<Found>,
     /// How it is seen.
     pub view: View,
 }
@@ -57,7 +58,7 @@ impl Ending {
     /// What is scattered at a place (W/(m^2 sr)); 0 where nothing is known of its kind.
     #[inline]
     pub fn at(&self, place: &Place, stream: &mut Stream) -> Spectrum {
-        match &self.found {
+        match &*self.found {
             Found::Walked(radiance) => radiance.at(&place.seen()),
             Found::Solved(solution) if self.view.flat => solution.at(place),
             Found::Solved(solution) => solution.about(place, stream),
@@ -66,7 +67,7 @@ impl Ending {
 
     /// Memory that it takes (bytes).
     pub fn bytes(&self) -> usize {
-        match &self.found {
+        match &*self.found {
             Found::Walked(radiance) => radiance.bytes(),
             Found::Solved(solution) => solution.bytes(),
         }

@@ -120,21 +120,20 @@ pub fn learn_rounds(scene: &Scene, film: &Film, settings: &Settings, rounds: usi
     }
     let view = View { at_once: algorithm == Algorithm::FirstPass, flat };
     // What is scattered where paths end was scattered so many times at most.
-    let most = max_depth.unwrap_or(u32::MAX).saturating_sub(if view.at_once { 1 } else { 2 });
+    let most = max_depth.map_or(u32::MAX, |most| most.saturating_sub(if view.at_once { 1 } else { 2 }));
     if most == 0 {
         return learnt;
     }
     let method = first_pass.by(algorithm);
     let solve = || {
         let settings = of_learning(wanted.options);
-        let found = match method {
+        Arc::new(match method {
             FirstPass::Walks => Found::Walked(radiance::learn(scene, film, &settings, &first, most - 1)),
             _ => Found::Solved(first_pass::solve(scene, method, most)),
-        };
-        Arc::new(Ending { found, view })
+        })
     };
-    let key = format!("{} {method:?} {view:?} {most}", wanted.key(film));
-    Learnt { ending: Some(scene.lights.endings.recall(key, solve)), ..learnt }
+    let found = scene.lights.endings.recall(format!("{} {method:?} {most}", wanted.key(film)), solve);
+    Learnt { ending: Some(Arc::new(Ending { found, view })), ..learnt }
 }
 
 /// True if walks by `settings` follow a guide.

@@ -4,7 +4,8 @@
 //! White fog without end absorbs nothing, and a walk through it has no end. From a distance of d, about a part r/d of all
 //! walks comes back to a sphere of radius r around the scene. A part (r/d)^2.5 of them goes on. As d doubles, walks take
 //! four times as many segments, and a sixth of them is left: their mean number of segments is finite. The few that come
-//! back weigh more the farther they went. Higher powers than 2.5 take less time and show more bright pixels.
+//! back weigh more the farther they went. The power is chosen by hand: in white fog around a lamp over a floor, 2 took
+//! twice the time for about the same error, and 3 showed bright pixels.
 
 use super::{mis::MisSums, walk::Departure};
 use crate::{

@@ -31,29 +31,19 @@ fn hollow(bsdf: Value, fog: Option<Value>, thing: Option<Value>) -> Stage {
     Stage::new(&scene(&parts))
 }
 
-/// Both previews of both methods that solve first passes in elements.
-const PREVIEWS: [(FirstPass, Algorithm); 4] = [
-    (FirstPass::Particles, Algorithm::Gather),
-    (FirstPass::Links, Algorithm::FirstPass),
-    (FirstPass::Particles, Algorithm::FirstPass),
-    (FirstPass::Links, Algorithm::Gather),
-];
-
-/// One preview of each method, in `turn`: to solve a first pass takes seconds.
-fn some(turn: usize) -> &'static [(FirstPass, Algorithm)] {
-    if turn.is_multiple_of(2) { &PREVIEWS[..2] } else { &PREVIEWS[2..] }
-}
-
-/// The mean radiance of `previews`.
-fn in_elements(stage: &mut Stage, previews: &[(FirstPass, Algorithm)]) -> Vec<(String, f64)> {
+/// The mean radiance of the previews of first passes that are solved in elements.
+fn in_elements(stage: &mut Stage) -> Vec<(String, f64)> {
     let mut found = Vec::new();
-    for (first_pass, algorithm) in previews.iter().copied() {
-        let options = &mut stage.setup.integrator.options;
-        *options = Options { first_pass, algorithm, ..*options };
-        options.effort.guide = Guiding::Never;
-        let image = stage.render(algorithm.strategies(), 64, 0);
-        let mean = image.iter().map(|pixel| f64::from(pixel.luminance())).sum::<f64>() / image.len() as f64;
-        found.push((format!("{} by {}", algorithm.name(), first_pass.name()), mean));
+    for first_pass in [FirstPass::Particles, FirstPass::Links] {
+        for algorithm in [Algorithm::Gather, Algorithm::FirstPass] {
+            let options = &mut stage.setup.integrator.options;
+            *options = Options { first_pass, algorithm, ..*options };
+            options.effort.guide = Guiding::Never;
+            let image = stage.render(algorithm.strategies(), 64, 0);
+            let mean =
+                image.iter().map(|pixel| f64::from(pixel.luminance())).sum::<f64>() / image.len() as f64;
+            found.push((format!("{} by {}", algorithm.name(), first_pass.name()), mean));
+        }
     }
     stage.setup.integrator.options.first_pass = FirstPass::Usual;
     found
@@ -80,16 +70,15 @@ fn furnaces_are_in_balance() {
     let ball = |bsdf: Value| {
         Some(json!({"type": "sphere", "center": [0.2, 0.1, -0.5], "radius": 0.3, "bsdf": bsdf}))
     };
-    let rooms = [
+    for (name, mut stage) in [
         ("empty", furnace(None, None)),
         ("mirror", furnace(None, ball(json!({"type": "conductor", "material": "none"})))),
         ("glass", furnace(None, ball(json!({"type": "dielectric"})))),
         ("fog", furnace(Some(medium(0.7, 1.0, 0.4)), None)),
         ("coloured fog", furnace(Some(medium(rgb(0.3, 0.6, 1.2), 1.0, 0.0)), None)),
-    ];
-    for (turn, (name, mut stage)) in rooms.into_iter().enumerate() {
+    ] {
         assert_close(name, mean(&mut stage, Algorithm::Gather), 3.0, 0.01);
-        for (preview, found) in in_elements(&mut stage, some(turn)) {
+        for (preview, found) in in_elements(&mut stage) {
             // Links see no mirrors.
             let loses = preview.contains("links") && matches!(name, "mirror" | "glass");
             assert_close(&format!("{name}, {preview}"), found, 3.0, if loses { 0.25 } else { 0.02 });
@@ -100,11 +89,11 @@ fn furnaces_are_in_balance() {
 /// Rough metal keeps about as much light as `pt` finds. Metal of alpha 0.4 counts as diffuse, and its ball was 3.9 % too dark.
 #[test]
 fn rough_walls_keep_their_light() {
-    for (alpha, previews) in [(0.15, some(0)), (0.4, &PREVIEWS[..])] {
+    for alpha in [0.15, 0.4] {
         let metal = json!({"type": "roughconductor", "material": "none", "alpha": alpha, "specular_reflectance": 0.8});
         let mut stage = hollow(metal, None, None);
         let expected = mean(&mut stage, Algorithm::Pt);
-        for (preview, found) in in_elements(&mut stage, previews) {
+        for (preview, found) in in_elements(&mut stage) {
             assert_close(&format!("alpha {alpha}, {preview}"), found, expected, 0.06);
         }
     }
@@ -115,11 +104,11 @@ fn rough_walls_keep_their_light() {
 fn depth_counts_what_was_learnt() {
     let mut stage = furnace(None, None);
     let mut expected = 0.0;
-    for depth in 1..=5usize {
-        expected += 1.5 * 0.5f64.powi(depth as i32 - 1);
+    for depth in 1..=5 {
+        expected += 1.5 * 0.5f64.powi(depth - 1);
         stage.setup.integrator.options.max_depth = Some(depth as u32);
         assert_close(&format!("depth {depth}"), mean(&mut stage, Algorithm::Gather), expected, 0.01);
-        for (preview, found) in in_elements(&mut stage, if depth <= 2 { &PREVIEWS } else { some(depth) }) {
+        for (preview, found) in in_elements(&mut stage) {
             assert_close(&format!("depth {depth}, {preview}"), found, expected, 0.02);
         }
     }
