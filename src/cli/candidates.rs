@@ -1,7 +1,7 @@
 //! What a pilot predicts for its candidates: for `info --pilot`.
 
 use super::{plan, provenance};
-use crate::learning::pilot::{Foretold, LEARNT, Report, WORTHWHILE};
+use crate::learning::pilot::{DENOISED, Foretold, LEARNT, Report, WORTHWHILE};
 use serde_json::{Value, json};
 
 /// How many are shown.
@@ -27,6 +27,9 @@ pub(super) fn table(report: &Report) -> String {
     );
     lines.push(format!(
         "            Longer walks beside light subpaths, and equiangular sampling, must be {WORTHWHILE} times better, learnt starts {LEARNT} times."
+    ));
+    lines.push(format!(
+        "            In images for a denoiser, light subpaths must be {DENOISED} times better: it leaves less of other noise."
     ));
     lines.join("\n")
 }

@@ -43,7 +43,7 @@ pub(super) fn run(Denoise { image, display }: &Denoise) -> Result<()> {
     if shares_samples(image)? {
         complain(&format!(
             "warning: pixels of {} share samples. The denoiser leaves much of such noise: render the image with --denoise, \
-             or with --film-samples own",
+             or with --film-samples apart",
             image.display()
         ));
     }

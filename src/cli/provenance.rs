@@ -75,7 +75,12 @@ fn extend(settings: &mut Value, setup: &Setup, options: &Options, film_samples: 
     if options.connections == Connections::All {
         settings["connections"] = "all".into();
     }
-    if setup.film.can_share() && film_samples == FilmSamples::Own {
+    let is_usual = match film_samples {
+        FilmSamples::Shared => true,
+        FilmSamples::Own => !setup.film.can_share(),
+        FilmSamples::Apart => false,
+    };
+    if !is_usual {
         settings["film_samples"] = film_samples.name().into();
     }
     if options.algorithm.ends_in_first_pass() {

@@ -325,6 +325,19 @@ impl Axis {
         (first..(last + 1).max(0) as usize)
             .map(move |i| (i, self.filter.value(x - (i as f32 + 0.5)) * self.scales[i]))
     }
+
+    /// One of these pixels, drawn by the magnitude of its value, and the weight that it then counts with.
+    #[inline]
+    pub fn pick(&self, x: f32, stream: &mut Stream) -> Option<(usize, f32)> {
+        let sum: f32 = self.weights(x).map(|(_, weight)| weight.abs()).sum();
+        let mut left = stream.uniform() * sum;
+        let is_it = |(_, weight): &(usize, f32)| {
+            left -= weight.abs();
+            left < 0.0
+        };
+        let drawn = self.weights(x).find(is_it).or_else(|| self.weights(x).last());
+        drawn.map(|(pixel, weight)| (pixel, sum.copysign(weight)))
+    }
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ use crate::{
     error::Result,
     math::{Spectrum, Vec2, vec2},
     memory,
-    sampling::Stream,
+    sampling::{Stream, stream::Purpose},
 };
 use filter::{Axis, Filter};
 use format::Format;
@@ -190,6 +190,16 @@ impl Film {
         self.across.covers(film.x) && self.down.covers(film.y)
     }
 
+    /// One of the pixels whose filter covers `film`, drawn by the magnitude of their shares, and the weight of a
+    /// contribution there. Position and pass decide which.
+    pub fn pick(&self, film: Vec2, pass: u64) -> Option<(usize, f32)> {
+        let [x, y] = film.to_array().map(|x| u64::from(x.to_bits()));
+        let mut stream = Stream::new(0, x << 32 | y, pass, Purpose::Splat);
+        let (x, across) = self.across.pick(film.x, &mut stream)?;
+        let (y, down) = self.down.pick(film.y, &mut stream)?;
+        Some((y * self.width as usize + x, across * down))
+    }
+
     /// Gives every pixel whose filter covers `film` its share of `value`, which negative lobes make negative.
     #[inline]
     pub fn spread(&self, film: Vec2, value: Spectrum, mut add: impl FnMut(usize, Spectrum)) {
@@ -212,7 +222,6 @@ fn reach(filter: Filter) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::stream::Purpose;
 
     /// Pixels of a part take the same samples, and give the same shares, as in the whole.
     #[test]

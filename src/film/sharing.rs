@@ -8,6 +8,7 @@
 //! of f^2 (3.1 for a Gaussian of half a pixel), and makes the noise of neighbouring pixels alike.
 
 use super::{
+    Film,
     filter::{Axis, Filter},
     lobes,
 };
@@ -25,15 +26,44 @@ pub enum FilmSamples {
     Shared,
     /// Their own, distributed by their filter: filter importance sampling.
     Own,
+    /// The same; and each contribution of a light subpath goes to one pixel, drawn by the filters, not to all that its
+    /// place counts for. No pixels share noise.
+    Apart,
 }
 
 impl FilmSamples {
     /// Each as typed.
-    pub const NAMES: [(&'static str, Self); 2] = [("shared", Self::Shared), ("own", Self::Own)];
+    pub const NAMES: [(&'static str, Self); 3] =
+        [("shared", Self::Shared), ("own", Self::Own), ("apart", Self::Apart)];
 
     /// As typed.
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize].0
+    }
+
+    /// The same, but no shared ones.
+    pub fn unshared(self) -> Self {
+        if self == Self::Shared { Self::Own } else { self }
+    }
+
+    /// Gives pixels of `film` the `value` that a light subpath of `pass` contributes at `place` (pixels).
+    #[inline]
+    pub fn splat(
+        self,
+        film: &Film,
+        pass: u64,
+        place: Vec2,
+        value: Spectrum,
+        mut add: impl FnMut(usize, Spectrum),
+    ) {
+        match self {
+            Self::Shared | Self::Own => film.spread(place, value, add),
+            Self::Apart => {
+                if let Some((pixel, weight)) = film.pick(place, pass) {
+                    add(pixel, value * weight);
+                }
+            }
+        }
     }
 }
 

@@ -10,7 +10,10 @@ use super::{
     ready::Ready,
 };
 use crate::{
-    film::{Film, sharing::Sharing},
+    film::{
+        Film,
+        sharing::{FilmSamples, Sharing},
+    },
     guide::Learnt,
     math::Spectrum,
     sampling::Stream,
@@ -33,6 +36,8 @@ pub trait Compiled: Send + Sync {
     fn scene(&self) -> &Scene;
     /// The film that it renders to.
     fn film(&self) -> &Film;
+    /// Which samples its pixels take.
+    fn film_samples(&self) -> FilmSamples;
     /// How pixels are divided.
     fn blocks(&self) -> &Blocks;
     /// How many channels may sample distances.

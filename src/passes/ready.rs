@@ -89,8 +89,13 @@ impl<'a, P: Profile> Ready<'a, P> {
         walks: &mut dyn Iterator<Item = u64>,
         sights: &mut dyn Iterator<Item = Sight>,
     ) -> Outcome {
-        let mut light =
-            Splatted { film: self.film, splats: Splats::default(), sample: pass as u64, faults: Vec::new() };
+        let mut light = Splatted {
+            film: self.film,
+            film_samples: self.film_samples,
+            splats: Splats::default(),
+            sample: pass as u64,
+            faults: Vec::new(),
+        };
         let mut cache = LightCache::new(P::Channels::COUNT);
         walks.for_each(|walk| self.trace_light(pass, walk, &mut cache, &mut light));
         let mut faults = light.faults;
@@ -150,6 +155,9 @@ impl<P: Profile> Compiled for Ready<'_, P> {
     }
     fn film(&self) -> &Film {
         self.film
+    }
+    fn film_samples(&self) -> FilmSamples {
+        self.film_samples
     }
     fn blocks(&self) -> &Blocks {
         &self.blocks
@@ -242,6 +250,7 @@ impl<P: Profile> Ready<'_, P> {
 /// What light subpaths contributed to the film.
 struct Splatted<'a> {
     film: &'a Film,
+    film_samples: FilmSamples,
     splats: Splats,
     sample: u64,
     faults: Vec<Fault>,
@@ -261,7 +270,8 @@ impl Observer for Splatted<'_> {
             return self.faults.push(Fault { cause, sample: self.sample, pixel: None });
         }
         let splats = &mut self.splats;
-        self.film.spread(film, *value, |pixel, value| splats.push(pixel as u32, value));
+        let add = |pixel, value| splats.push(pixel as u32, value);
+        self.film_samples.splat(self.film, self.sample, film, *value, add);
     }
 }
 

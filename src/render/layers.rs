@@ -8,6 +8,7 @@ use crate::{
     film::{
         Film,
         layer::{Component, Content, Layer, Part},
+        sharing::FilmSamples,
     },
     math::{Spectrum, Vec2},
     passes::{
@@ -124,7 +125,7 @@ struct Sorted<'a> {
 impl<'a> Sorted<'a> {
     fn new(compiled: &'a dyn Compiled, sorter: &'a Sorter, pass: usize, at: &'a Cell<Option<u32>>) -> Self {
         let (film, sample) = (compiled.film(), pass as u64);
-        let light = LightPathObserver::new(film, sorter, pass, compiled.heroes());
+        let light = LightPathObserver::new(compiled, sorter, pass);
         let place = Fault { cause: Cause::NotFinite { s: 0, t: 0 }, sample, pixel: None };
         let camera = CameraPathObserver {
             film,
@@ -165,6 +166,7 @@ impl BlockObserver for Sorted<'_> {
 /// Contributions of light subpaths to the film, by where they come from.
 struct LightPathObserver<'a> {
     film: &'a Film,
+    film_samples: FilmSamples,
     sorter: &'a Sorter,
     sample: u64,
     /// Of the light subpath at hand.
@@ -179,16 +181,17 @@ struct LightPathObserver<'a> {
 }
 
 impl<'a> LightPathObserver<'a> {
-    fn new(film: &'a Film, sorter: &'a Sorter, pass: usize, heroes: usize) -> Self {
+    fn new(compiled: &'a dyn Compiled, sorter: &'a Sorter, pass: usize) -> Self {
         Self {
-            film,
+            film: compiled.film(),
+            film_samples: compiled.film_samples(),
             sorter,
             sample: pass as u64,
             light: 0,
             is_from_medium: false,
             trail: Trail::default(),
             hero: 0,
-            kept: vec![Vec::new(); heroes],
+            kept: vec![Vec::new(); compiled.heroes()],
             splats: Splats::default(),
             faults: Vec::new(),
         }
@@ -225,7 +228,7 @@ impl Observer for LightPathObserver<'_> {
         };
         let first = self.sorter.plane(self.light, component).map(|plane| plane * self.film.len());
         let splats = &mut self.splats;
-        self.film.spread(film, *value, |pixel, value| {
+        self.film_samples.splat(self.film, self.sample, film, *value, |pixel, value| {
             splats.push(pixel as u32, value);
             if let Some(first) = first {
                 splats.push((first + pixel) as u32, value);

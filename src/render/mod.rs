@@ -23,7 +23,7 @@ pub use subject::{Stage, Subject};
 
 use crate::{
     error::Result,
-    film::{Channel, Film, accumulator::Accumulator, layer::Layer, sharing::FilmSamples},
+    film::{Channel, Film, accumulator::Accumulator, layer::Layer},
     passes::budget::Budget,
     settings::integrator::FogSettings,
     transport::{Algorithm, Heuristic, Options, Strategies},
@@ -106,7 +106,7 @@ pub fn go_on<'a>(
         AnySums::Adaptive(halves) => {
             let (stopwatch, started) = (Stopwatch::start(), Instant::now());
             // Pixels need different numbers of samples.
-            let settings = &Settings { film_samples: FilmSamples::Own, ..*settings };
+            let settings = &Settings { film_samples: settings.film_samples.unshared(), ..*settings };
             let stage = &Stage::new(subject.into(), film, settings, layers, Some(halves.precision));
             let watch = &mut |progress, halves: &Halves| watch(progress, halves);
             Adaptive { stage, stopwatch: &stopwatch, watch }.run(halves)?;

@@ -19,6 +19,8 @@ pub enum Purpose {
     Study = 4,
     /// When a pass sees a scene that moves.
     Shutter = 5,
+    /// Pixels of what light subpaths contribute.
+    Splat = 6,
 }
 
 /// One sequence of uniform numbers: the coordinates of a point, if it has one, then independent numbers.

@@ -95,19 +95,49 @@ mod tests {
     use super::*;
     use crate::{
         guide::Learnt,
+        math::Vec2,
         sampling::stream::Purpose,
         settings::options::Options,
-        transport::{Estimator, LightCache, Nowhere, profiles::Fog, tests::scenes::build},
+        transport::{Estimator, LightCache, Nowhere, camera_path, profiles::Fog, tests::scenes::build},
     };
+
+    const FOG: [&str; 3] = [
+        r#""fog": {"type": "homogeneous", "sigma_t": 1, "albedo": 1}"#,
+        r#""camera": {"type": "perspective", "fog": {"type": "ref", "id": "fog"}}"#,
+        r#""lamp": {"type": "point", "position": [0, 0, 6], "intensity": 1}"#,
+    ];
+
+    /// Throughputs of those of 10,000 walks that go on as `next`, over that of `next`.
+    fn survivors<S: MisSums>(thinning: &Thinning, begun: f32, next: Departure<S>) -> Vec<f32> {
+        let mut stream = Stream::new(2, 0, 0, Purpose::Study);
+        let walks = (0..10_000).filter_map(|_| thinning.thin(begun, next, &mut stream));
+        walks.map(|walk| walk.throughput.x / next.throughput.x).collect()
+    }
+
+    /// A wide film, or a wide beam, begins outside the sphere.
+    #[test]
+    fn a_start_far_away_ends_no_walk_but_going_farther_does() {
+        let setup = build(&FOG);
+        let estimator = Estimator::<Fog>::new(&setup.scene, Options::default(), Learnt::default(), 1, 64, 64);
+        let start = camera_path::depart(&estimator, Vec2::ZERO, Vec2::ZERO);
+        let thinning = Thinning::of(&setup.scene);
+        let way = Vec3::X * (10.0 * thinning.squared_radius.sqrt());
+        let begun = thinning.begun(thinning.centre + way);
+        for times in [0.5, 1.0, 2.0f32] {
+            let next = Departure { position: thinning.centre + way * times, edges: 1, ..start };
+            let found = survivors(&thinning, begun, next);
+            let part = times.powf(-2.5).min(1.0);
+            let expected = 1e4 * part;
+            let off = (found.len() as f32 - expected).abs();
+            assert!(off <= 5.0 * (expected * (1.0 - part)).sqrt(), "{times}: {}", found.len());
+            assert!(found.iter().all(|factor| (factor * part - 1.0).abs() < 1e-5), "{times}");
+        }
+    }
 
     /// Light of a lamp in white fog without end: after 30 segments, a tenth of all walks brings the same power.
     #[test]
     fn few_walks_bring_the_light_of_all() {
-        let setup = build(&[
-            r#""fog": {"type": "homogeneous", "sigma_t": 1, "albedo": 1}"#,
-            r#""camera": {"type": "perspective", "fog": {"type": "ref", "id": "fog"}}"#,
-            r#""lamp": {"type": "point", "position": [0, 0, 6], "intensity": 1}"#,
-        ]);
+        let setup = build(&FOG);
         let options = Options { max_depth: Some(31), ..Options::default() };
         let mut estimator = Estimator::<Fog>::new(&setup.scene, options, Learnt::default(), 1, 64, 64);
         let mut found = |thinning: Thinning| {

@@ -37,17 +37,19 @@ fn frames(images: &[Vec<Spectrum>], width: usize) -> Vec<Vec<Spectrum>> {
 }
 
 #[test]
-fn shared_and_own_samples_show_the_same() {
+fn all_kinds_of_film_samples_show_the_same() {
     let sets = [Strategies::PT, Strategies::BDPT, strategies("hit+lens")];
     let mut claims = Claims::new();
     for filter in ["gaussian", "tent", "catmullrom", "lanczos"] {
-        let [own, shared] = [FilmSamples::Own, FilmSamples::Shared].map(|samples| stage(filter, samples));
+        let [shared, own, apart] = FilmSamples::NAMES.map(|(_, samples)| stage(filter, samples));
         let width = own.width();
         let truth = own.renders(Strategies::PT, 64, 5000..5000 + SEEDS);
-        for (i, set) in sets.into_iter().enumerate() {
+        let light = strategies("hit+lens");
+        let kinds = sets.map(|set| (&shared, set)).into_iter().chain([(&apart, light)]);
+        for (i, (stage, set)) in kinds.enumerate() {
             let first = 100 * i as u64;
-            let images = shared.renders(set, 16, first..first + SEEDS);
-            let what = format!("{filter}, {}", crate::common::name_of(set));
+            let images = stage.renders(set, 16, first..first + SEEDS);
+            let what = format!("{filter}, {}, {}", stage.film_samples.name(), crate::common::name_of(set));
             claims.equal(&what, &Sample::of(&images, width), &Sample::of(&truth, width));
             let [images, truth] = [&images, &truth].map(|images| frames(images, width));
             let width = images[0].len() / 2;
@@ -75,4 +77,28 @@ fn sharing_leaves_less_than_half_of_the_variance() {
     let [own, shared] =
         [FilmSamples::Own, FilmSamples::Shared].map(|samples| variance(&stage("gaussian", samples)));
     assert!(shared < 0.5 * own, "{shared} of {own}");
+}
+
+/// Of light subpaths that each reach one place on the film, the images of neighbours are alike unless they are apart.
+#[test]
+fn noise_of_light_subpaths_is_independent_only_apart() {
+    let correlation = |samples| {
+        let stage = stage("gaussian", samples);
+        let images = stage.renders(strategies("lens"), 1, 0..20 * SEEDS);
+        let (n, width) = (images.len() as f64, stage.width());
+        let mean: Vec<f64> = (0..images[0].len())
+            .map(|pixel| images.iter().map(|image| f64::from(image[pixel].y)).sum::<f64>() / n)
+            .collect();
+        let (mut products, mut squares) = (0.0, 0.0);
+        for image in &images {
+            let off = |pixel: usize| (f64::from(image[pixel].y) - mean[pixel]) / mean[pixel];
+            for pixel in (0..mean.len()).filter(|pixel| pixel % width + 1 < width) {
+                products += off(pixel) * off(pixel + 1);
+                squares += off(pixel) * off(pixel);
+            }
+        }
+        products / squares
+    };
+    let [own, apart] = [FilmSamples::Own, FilmSamples::Apart].map(correlation);
+    assert!(own > 0.2 && apart.abs() < 0.05, "{own}, {apart}");
 }

@@ -51,11 +51,11 @@ def test_what_is_denoised_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 def test_shared_samples_are_warned_of(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pyoidn", blurred([]))
     few: dict[str, Any] = {"spp": 1, "size": (8, 6)}
-    with pytest.warns(TyndallWarning, match="film_samples='own'"):
+    with pytest.warns(TyndallWarning, match="film_samples='apart'"):
         tyndall.render(SCENES / "foggy_room.json", **few).denoised()
     with warnings.catch_warnings():
         warnings.simplefilter("error", TyndallWarning)
-        tyndall.render(SCENES / "foggy_room.json", film_samples="own", **few).denoised()
+        tyndall.render(SCENES / "foggy_room.json", film_samples="apart", **few).denoised()
         tyndall.render(SCENES / "foggy_room.json", features=True, **few).denoised()
 
 

@@ -131,14 +131,15 @@ pub struct Estimator {
     #[arg(long, value_name = "NAME", value_parser = one_of(&Sampler::NAMES))]
     pub sampler: Option<Sampler>,
 
-    /// Which camera samples a pixel takes [default: shared; own with --denoise, --error, --progressive, layers of moments or
-    /// variances, and the layers first_albedo and first_normal, which denoisers need]
+    /// Which camera samples a pixel takes [default: shared; own with --error, --progressive, layers of moments or variances;
+    /// apart with --denoise, and with the layers first_albedo and first_normal, which denoisers need]
     ///
     /// shared: all that its filter reaches, also those of the pixels around it; own: its own, distributed by its filter
-    /// (filter importance sampling). The expected image is the same. Under the default filter, shared samples leave a
-    /// third of the variance. They make the noise of neighbouring pixels alike, which denoisers do not expect. A pixel
-    /// always takes its own samples with a filter that ends within the pixel (box), with a film that is sampled beyond
-    /// its border, and with --crop.
+    /// (filter importance sampling); apart: its own, and what a light subpath contributes to the image goes to one pixel
+    /// in place of all whose filter reaches it. The expected image is the same. Under the default filter, shared samples
+    /// leave a third of the variance. They make the noise of neighbouring pixels alike, which denoisers do not expect:
+    /// with apart it is independent. No pixels share samples with a filter that ends within the pixel (box), with a film
+    /// that is sampled beyond its border, and with --crop.
     #[arg(long, value_name = "NAME", value_parser = one_of(&FilmSamples::NAMES))]
     pub film_samples: Option<FilmSamples>,
 

@@ -211,10 +211,14 @@ impl Estimator {
     }
 
     fn film_samples(&self, setup: &Setup) -> FilmSamples {
-        let needs_own = |layer: &Layer| layer.needs_squares() || layer.is_for_denoisers();
-        let has_such = setup.integrator.layers.iter().any(needs_own);
-        let usual = if has_such { FilmSamples::Own } else { FilmSamples::Shared };
-        if setup.film.can_share() { self.film_samples.unwrap_or(usual) } else { FilmSamples::Own }
+        let has = |is_such: fn(&Layer) -> bool| setup.integrator.layers.iter().any(is_such);
+        let usual = match () {
+            _ if has(Layer::is_for_denoisers) => FilmSamples::Apart,
+            _ if has(Layer::needs_squares) => FilmSamples::Own,
+            _ => FilmSamples::Shared,
+        };
+        let asked = self.film_samples.unwrap_or(usual);
+        if setup.film.can_share() { asked } else { asked.unshared() }
     }
 
     fn sampler(&self, setup: &Setup) -> Sampler {

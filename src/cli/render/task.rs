@@ -77,7 +77,8 @@ pub(in crate::cli) fn estimator(arguments: &Render, setup: &Setup) -> Result<Est
         ));
     }
     if uneven.is_some() || *denoise {
-        estimator.film_samples.get_or_insert(FilmSamples::Own);
+        let usual = if *denoise { FilmSamples::Apart } else { FilmSamples::Own };
+        estimator.film_samples.get_or_insert(usual);
     }
     Ok(estimator)
 }

@@ -45,6 +45,10 @@ pub const WORTHWHILE: f64 = 1.1;
 /// longer than counts say; and a pilot with learnt starts finds other choices somewhat too noisy. Measured in 35 scenes
 /// drawn at random: the true gain was 0.7 of the forecast where that was above 1.1, training apart.
 pub const LEARNT: f64 = 1.6;
+/// Light subpaths must be better by this factor in images for a denoiser, which leaves less of the noise of camera subpaths.
+/// Measured in five scenes: error x time by `pt` over that by all strategies was 0.7 (`cumulus`), 1.0 (`studio_smoke`), 1.7
+/// (`pine_wood`), 8 (`fog_room`) and 9 (`candles`); once denoised 0.6, 0.7, 0.7, 1.8 and 1.6.
+pub const DENOISED: f64 = 2.5;
 /// Starts are learnt if the lens sees at most this part of the light subpaths. Measured in the same scenes: starts paid
 /// where it saw 0 to 0.09 of them.
 const REMOTE: f64 = 0.1;
@@ -202,7 +206,7 @@ impl Pilots<'_> {
             options,
             seed: SEED,
             sampler: Sampler::Independent,
-            film_samples: FilmSamples::Own,
+            film_samples: self.settings.film_samples.unshared(),
             ..*self.settings
         };
         let samples = (SHARE * self.work).clamp(LEAST, MOST) as usize;
@@ -211,7 +215,7 @@ impl Pilots<'_> {
         let compiled = compiled::by_kind(self.scene, self.film, &settings, learnt, PIXELS_PER_BLOCK);
         let left = match self.settings.film_samples {
             FilmSamples::Shared => self.film.variance_left(),
-            FilmSamples::Own => 1.0,
+            FilmSamples::Own | FilmSamples::Apart => 1.0,
         };
         Forecast::fly(&*compiled, effort.survival, [passes, samples / passes], left)
     }
@@ -250,7 +254,8 @@ impl Pilots<'_> {
         candidates.sort_by(|a, b| a.judgement.total_cmp(&b.judgement));
         let best = candidates[0];
         // With the same allowance for rare bright paths in both: what few samples saw of these would decide the ratio.
-        let cost = |one: &Foretold| (one.error.usual + UNSEEN * least) * one.time;
+        let cost =
+            |one: &Foretold| self.for_denoiser(&one.choice) * (one.error.usual + UNSEEN * least) * one.time;
         let gain = base.map_or(1.0, |base| cost(&base) / cost(&best));
         Report { choice: Choice { gain, ..best.choice }, candidates, samples: pilot.samples() }
     }
@@ -271,7 +276,14 @@ impl Pilots<'_> {
         let rare = [is_spread_less, strategies.equiangular && !all.equiangular];
         let burden = WORTHWHILE.powi(rare.into_iter().filter(|is| *is).count() as i32);
         let learnt = effort.learnt_starts && !self.base.effort.learnt_starts;
-        burden * if learnt { LEARNT } else { 1.0 } * (foretold.error.usual + UNSEEN * least) * foretold.time
+        let burden = burden * if learnt { LEARNT } else { 1.0 } * self.for_denoiser(&foretold.choice);
+        burden * (foretold.error.usual + UNSEEN * least) * foretold.time
+    }
+
+    /// How much more the error of `choice` counts if a denoiser is to see the image.
+    fn for_denoiser(&self, choice: &Choice) -> f64 {
+        let is_denoised = self.settings.film_samples == FilmSamples::Apart;
+        if is_denoised && choice.strategies.need_light_walks() { DENOISED } else { 1.0 }
     }
 
     /// The choices that leave no light out and keep to earlier decisions; with learnt starts too if the pilot knows
@@ -379,6 +391,21 @@ mod tests {
         let Setup { scene, film, .. } = setup;
         Pilots { scene, film, settings, decided: Decided::default(), base, work: f64::INFINITY }
             .fly(learnt_starts)
+    }
+
+    #[test]
+    fn light_subpaths_must_be_better_for_a_denoiser() {
+        let (Setup { scene, film, .. }, settings) = &small("efficiency/glass_fog_sky.xml", Strategies::BDPT);
+        let judgement = |film_samples, strategies| {
+            let choice = Choice { among: Strategies::BDPT, strategies, effort: Effort::default(), gain: 1.0 };
+            let (settings, decided) = (&Settings { film_samples, ..*settings }, Decided::default());
+            let pilots = Pilots { scene, film, settings, decided, base: choice, work: f64::INFINITY };
+            let error = Error { usual: 1.0, few: 0.0 };
+            pilots.judge(&Foretold { choice, error, time: 1.0, judgement: f64::INFINITY }, 0.0)
+        };
+        let ratio =
+            |strategies| judgement(FilmSamples::Apart, strategies) / judgement(FilmSamples::Own, strategies);
+        assert_eq!([Strategies::BDPT, Strategies::PT].map(ratio), [DENOISED, 1.0]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::{End, WALKS_END};
 use crate::{
-    film::Film,
+    film::{Film, sharing::FilmSamples},
     learning::follower::Follower,
     math::{Spectrum, SpectrumExt, Vec2},
     passes::{blocks::CameraStart, compiled::Compiled, observe::BlockObserver},
@@ -129,6 +129,8 @@ pub(super) struct Recorded {
 /// Sees the walks of a block and what they contribute; those of the camera to the last of its pixels.
 struct Recorder<'a> {
     film: &'a Film,
+    film_samples: FilmSamples,
+    pass: u64,
     survival: Survival,
     follower: Follower<'a>,
     weight: f32,
@@ -149,9 +151,13 @@ struct Recorder<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    fn new(film: &'a Film, survival: Survival, follower: Follower<'a>, heroes: usize) -> Self {
+    fn new(compiled: &'a dyn Compiled, survival: Survival, pass: usize) -> Self {
+        let heroes = compiled.heroes();
+        let follower = Follower::new(&compiled.scene().lights, compiled.starts(), heroes);
         Self {
-            film,
+            film: compiled.film(),
+            film_samples: compiled.film_samples(),
+            pass: pass as u64,
             survival,
             follower,
             weight: 1.0,
@@ -279,7 +285,8 @@ impl Observer for Recorder<'_> {
                 self.recorded.work.iter_mut().for_each(|work| work.reaching += 1.0);
                 self.is_seen = true;
             }
-            return self.film.spread(film, *value, |pixel, value| add(pixel as u32, value));
+            let add = |pixel, value| add(pixel as u32, value);
+            return self.film_samples.splat(self.film, self.pass, film, *value, add);
         }
         let value = *value * self.weight;
         if let Some((pixel, sum)) = self.sums.last_mut() {
@@ -306,9 +313,7 @@ impl Part {
 
 /// The samples of `block` in `pass` of `compiled`, whose walks end by `survival`.
 pub(super) fn part(compiled: &dyn Compiled, survival: Survival, pass: usize, block: usize) -> Part {
-    let (film, heroes) = (compiled.film(), compiled.heroes());
-    let follower = Follower::new(&compiled.scene().lights, compiled.starts(), heroes);
-    let mut recorder = Recorder::new(film, survival, follower, heroes);
+    let mut recorder = Recorder::new(compiled, survival, pass);
     compiled.observe(pass, block, &|_| true, &mut recorder);
     Part { camera: recorder.recorded, light: recorder.light, sums: recorder.sums }
 }

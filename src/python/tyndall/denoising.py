@@ -35,7 +35,7 @@ def denoised(picture: Picture) -> Picture:
     """The picture as Open Image Denoise sees it. A warning says where much noise will stay."""
     pyoidn = library()
     if picture.metadata.get("shares_samples"):
-        warnings.warn("pixels of this picture share samples. The denoiser leaves much of such noise: render it with features=True, or with film_samples='own'", TyndallWarning, stacklevel=3)  # fmt: skip
+        warnings.warn("pixels of this picture share samples. The denoiser leaves much of such noise: render it with features=True, or with film_samples='apart'", TyndallWarning, stacklevel=3)  # fmt: skip
     layers = picture.layers
     features: dict[str, Any] = {name: single(layers[name]) for name in (ALBEDO, NORMAL) if name in layers}
     found = pyoidn.denoise(single(picture), hdr=True, **features)

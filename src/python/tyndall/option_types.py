@@ -23,7 +23,7 @@ class RenderOptions(TypedDict, total=False):
     max_depth: int | None
     min_depth: int | None
     sampler: Literal["sobol", "independent"] | None
-    film_samples: Literal["shared", "own"] | None
+    film_samples: Literal["shared", "own", "apart"] | None
     guide: Literal["auto", "always", "never"] | bool | None
     heuristic: str | None
     connections: Literal["cached", "all"] | None

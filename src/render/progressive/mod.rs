@@ -23,7 +23,7 @@ use super::{
 };
 use crate::{
     error::Result,
-    film::{Channel, Film, accumulator::Accumulator, layer::Layer, sharing::FilmSamples},
+    film::{Channel, Film, accumulator::Accumulator, layer::Layer},
     math::{DVec3, Spectrum, vec2},
     passes::{Settings, blocks::Blocks, faults::Faults, pass::Outcome},
     scene::Scene,
@@ -113,7 +113,7 @@ pub fn run(
 ) -> Result<(Image, Shaded)> {
     let started = Instant::now();
     // Not every pixel has samples.
-    let settings = &Settings { film_samples: FilmSamples::Own, ..*settings };
+    let settings = &Settings { film_samples: settings.film_samples.unshared(), ..*settings };
     let stage = Stage::still(Instrument::of_blocks(GROUP, scene, film, settings));
     let instrument = &stage.instrument;
     let fog = fog.map(|fog| Preview::of(&*instrument.compiled, fog, settings));
