@@ -309,7 +309,7 @@ def with_table(text: str) -> str:
 
 def row(entry: Entry, found: Measured | None) -> str:
     """A line of the table."""
-    ours = "" if found is None else figures(found.seconds, found.relmse)
+    ours = "" if found is None else figures(found.seconds, found.relmse, f" on {found.threads} threads")
     theirs = f"none: {entry.why_not}"
     if entry.mitsuba:
         told = "" if found is None or found.mitsuba_seconds is None else f"<br>{found.mitsuba_by}: {figures(found.mitsuba_seconds, found.mitsuba_relmse)}"
@@ -319,9 +319,9 @@ def row(entry: Entry, found: Measured | None) -> str:
     return f"| {shown(entry.pictures[0])} | **{entry.title}**{after}: {entry.shows} | `{entry.command}` | {ours}{denoised} | {theirs} |"
 
 
-def figures(seconds: float, relmse: float | None) -> str:
-    """Seconds, and relMSE where it is known."""
-    return f"{seconds:.0f} s" + ("" if relmse is None else f", {relmse:.2g}")
+def figures(seconds: float, relmse: float | None, by: str = "") -> str:
+    """Seconds, what took them, and relMSE where it is known."""
+    return f"{seconds:.0f} s{by}" + ("" if relmse is None else f", {relmse:.2g}")
 
 
 def shown(path: Path) -> str:
