@@ -29,7 +29,7 @@ pub(super) fn table(report: &Report) -> String {
         "            Longer walks beside light subpaths, and equiangular sampling, must be {WORTHWHILE} times better, learnt starts {LEARNT} times."
     ));
     lines.push(format!(
-        "            In images for a denoiser, light subpaths must be {DENOISED} times better: it leaves less of other noise."
+        "            In images for a denoiser, light subpaths must be {DENOISED} times better: it removes less of their noise."
     ));
     lines.join("\n")
 }

@@ -45,7 +45,7 @@ pub const WORTHWHILE: f64 = 1.1;
 /// longer than counts say; and a pilot with learnt starts finds other choices somewhat too noisy. Measured in 35 scenes
 /// drawn at random: the true gain was 0.7 of the forecast where that was above 1.1, training apart.
 pub const LEARNT: f64 = 1.6;
-/// Light subpaths must be better by this factor in images for a denoiser, which leaves less of the noise of camera subpaths.
+/// Light subpaths must be better by this factor in images for a denoiser, which removes less of their noise.
 /// Measured in five scenes: error x time by `pt` over that by all strategies was 0.7 (`cumulus`), 1.0 (`studio_smoke`), 1.7
 /// (`pine_wood`), 8 (`fog_room`) and 9 (`candles`); once denoised 0.6, 0.7, 0.7, 1.8 and 1.6.
 pub const DENOISED: f64 = 2.5;
