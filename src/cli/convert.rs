@@ -101,6 +101,10 @@ fn scene(arguments: &Convert) -> Result<()> {
 /// The `.vol` file `output` of the volume file `input`.
 fn voxels(input: &Path, grid: Option<&str>, output: &Path) -> Result<()> {
     check_short([&output.to_owned()])?;
+    if format::is_scene(input) {
+        let remedy = "name a .vol, .vdb or .nvdb to read, or a .xml, .json or .png to write";
+        return Err(Error::new(input.display(), "a volume file", "a scene", remedy));
+    }
     let voxels = grid::to_vol(input, grid)?;
     film::output::write(output, |file| voxels.write(file))?;
     super::console::say(&output.display().to_string());

@@ -17,6 +17,7 @@ use crate::{
     error::Result,
     film::{
         Film, Window,
+        filter::Filter,
         format::{Component, FileKind},
         layer::Layer,
     },
@@ -225,13 +226,24 @@ fn describe_film(film: &Film) -> String {
         (_, Component::Uint32) => "uint32",
     };
     format!(
-        "{} x {}{part}, {:?} filter{border}, {} as {numbers} in .{}",
+        "{} x {}{part}, {}{border}, {} as {numbers} in .{}",
         film.width,
         film.height,
-        film.filter,
+        describe_filter(film.filter),
         format.names().concat(),
         format.file.extension()
     )
+}
+
+fn describe_filter(filter: Filter) -> String {
+    match filter {
+        Filter::Box => "box filter".to_owned(),
+        Filter::Tent { radius } => format!("tent filter (radius {radius})"),
+        Filter::Gaussian { stddev } => format!("Gaussian filter (stddev {stddev})"),
+        Filter::Cubic { b: 0.0, c: 0.5 } => "Catmull-Rom filter".to_owned(),
+        Filter::Cubic { b, c } => format!("Mitchell-Netravali filter (B {b}, C {c})"),
+        Filter::Lanczos { lobes } => format!("Lanczos filter ({lobes} lobes)"),
+    }
 }
 
 /// Every layer with the ends of its channels' names.

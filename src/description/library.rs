@@ -3,6 +3,7 @@
 use super::{
     object::{Location, Object, Value},
     registry::suggest,
+    warnings::Warnings,
 };
 use crate::error::{Error, Result};
 use crate::math::DVec3;
@@ -18,7 +19,7 @@ use std::{
 #[derive(Debug, Default)]
 pub struct Library {
     objects: HashMap<String, Object>,
-    warnings: RefCell<Vec<String>>,
+    warnings: RefCell<Warnings>,
     /// True if numbers of files that are a hair out of range are refused, not mended.
     pub is_strict: bool,
     /// Smooth glass and metal are as rough as this, if anything.
@@ -105,26 +106,18 @@ impl Library {
         location.file.parent().unwrap_or(Path::new("")).join(name)
     }
 
-    /// Informs the user, once, of something that is not an error.
+    /// Informs the user of something that is not an error.
     pub fn warn(&self, location: &Location, text: &str) {
-        let (warning, mut warnings) = (format!("{location}: {text}"), self.warnings.borrow_mut());
-        if !warnings.contains(&warning) {
-            warnings.push(warning);
-        }
+        self.warnings.borrow_mut().add(location.to_string(), text);
     }
 
-    /// Informs the user of something about a file, once, and of several things in one warning.
+    /// Informs the user of something about a file.
     pub fn note(&self, file: &Path, text: &str) {
-        let (start, mut warnings) = (format!("{}: ", file.display()), self.warnings.borrow_mut());
-        match warnings.iter_mut().find(|warning| warning.starts_with(&start)) {
-            None => warnings.push(format!("{start}{text}")),
-            Some(warning) if warning.contains(text) => {}
-            Some(warning) => *warning = format!("{warning}; {text}"),
-        }
+        self.warnings.borrow_mut().note(file, text);
     }
 
     /// All warnings so far, in order.
     pub fn take_warnings(&self) -> Vec<String> {
-        self.warnings.take()
+        self.warnings.take().into_lines()
     }
 }

@@ -11,6 +11,7 @@ pub mod registry;
 mod spelling;
 pub mod substitutes;
 pub mod transform;
+mod warnings;
 
 pub use keyframes::Keyframes;
 pub use library::{Kept, Library};

@@ -19,5 +19,5 @@ mod xml;
 
 pub use files::{Sources, file_fingerprint, fingerprint};
 pub use input::{STANDARD_INPUT, bytes, is_standard_input, told};
-pub use read::{Spelling, read, sources};
+pub use read::{Spelling, is_scene, read, sources};
 pub use write::{Conversion, convert, transform, write};

@@ -70,6 +70,11 @@ fn spelling_of(path: &Path, text: &str) -> Result<Spelling> {
     }
 }
 
+/// True if the file at `path` is a scene by its name.
+pub fn is_scene(path: &Path) -> bool {
+    spelling(path).is_ok()
+}
+
 /// The format according to the extension of the file name.
 pub(super) fn spelling(path: &Path) -> Result<Spelling> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());

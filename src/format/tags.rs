@@ -162,6 +162,11 @@ pub(crate) fn tables(tag: &str) -> Vec<(&'static str, &'static Table)> {
     }
 }
 
+/// The table of the one called `plugin`.
+pub(crate) fn table(tag: &str, plugin: &str) -> Option<&'static Table> {
+    tables(tag).into_iter().find_map(|(name, table)| (name == plugin).then_some(table))
+}
+
 /// Their names; none where there is a choice of one only.
 pub(crate) fn ours(tag: &str) -> Vec<&'static str> {
     let tables = if tag == "film" { Vec::new() } else { tables(tag) };

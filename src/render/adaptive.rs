@@ -62,7 +62,7 @@ impl Adaptive<'_, '_> {
                     halves.elapsed = before + stopwatch.elapsed();
                     self.tell(halves, false);
                 });
-                done >= tasks.len()
+                done >= tasks.len() && !is_over()
             })?;
             if !is_done {
                 return Ok(false);

@@ -231,7 +231,8 @@ fn accumulate(
                 (monitor.watch)(sums.progress(elapsed, false), sums);
             });
             next += done;
-            next == queue.end || done < tasks.len()
+            // `done` does not tell where all tasks are one, as those of a moving scene on one block: that is always done.
+            next == queue.end || done < tasks.len() || is_over()
         })?;
         let (elapsed, samples_per_pixel) = (stopwatch.elapsed(), sums.samples.count());
         sums.elapsed = before + elapsed;

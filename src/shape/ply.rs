@@ -226,11 +226,11 @@ impl<'a> Ply<'a> {
     fn triangles(&self, faces: &[Element], vertices: usize) -> Result<Vec<[u32; 3]>> {
         let mut triangles = Vec::with_capacity(faces.len());
         for (number, face) in faces.iter().enumerate() {
-            let corners = face.corners.as_deref().filter(|c| c.len() >= 3);
-            let Some(corners) = corners.filter(|c| c.iter().all(|i| (*i as usize) < vertices)) else {
+            let corners = face.corners.as_deref().unwrap_or_default();
+            if corners.len() < 3 || corners.iter().any(|i| (*i as usize) >= vertices) {
                 let expected = format!("three or more vertex numbers below {vertices} in every face");
-                return Err(self.wrong(expected, format!("{:?} in face {number}", face.corners)));
-            };
+                return Err(self.wrong(expected, format!("{corners:?} in face {number}")));
+            }
             triangles.extend(corners[1..].windows(2).map(|pair| [corners[0], pair[0], pair[1]]));
         }
         Ok(triangles)

@@ -212,3 +212,19 @@ fn fog_that_appears_late_is_lit() {
     let ratio = red("pilot.exr") / red("named.exr");
     assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
 }
+
+/// All tasks of such a pass are one, which is always done.
+#[test]
+fn a_moving_scene_of_one_block_ends_in_time() {
+    let mut scene = animated();
+    scene["sensor"]["shutter_close"] = json!(1);
+    let sandbox = Sandbox::with_scene(&scene);
+    let render = "$TYNDALL render scene.json --spp 100000000 -o a.exr";
+    for words in ["--time-limit 0.3s", "--time-limit 0.3s --error 0.00001"] {
+        sandbox.shell(&format!("timeout 60 {render} {words}")).ends(0);
+    }
+    std::fs::remove_file(sandbox.path("a.exr")).unwrap();
+    // It is interrupted after a second, and killed if it goes on.
+    sandbox.shell(&format!("timeout -s INT -k 60 1 {render}; test $? != 137")).ends(0);
+    assert!(sandbox.path("a.exr").exists());
+}

@@ -188,6 +188,7 @@ fn a_grid_becomes_mitsubas_file() {
     sandbox.run("render scene.json --spp 1 -o a.exr").ends(0);
     sandbox.run("render b.json --spp 1 -o b.exr").ends(0);
     assert_eq!(sandbox.channels("a.exr"), sandbox.channels("b.exr"));
+    sandbox.run("convert scene.json c.vol").refuses(&["scene.json", "a volume file", "a scene"]);
     sandbox.run("convert a.vdb c.vol --grid fire").refuses(&["a.vdb", "fire"]);
     sandbox.run("convert a.vdb c.json --grid burn").refuses(&["--grid", "a .vol file to write"]);
     sandbox.run("convert a.vdb c.vol -D x=1").refuses(&["-D", "a scene file to write"]);

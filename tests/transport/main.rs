@@ -10,6 +10,7 @@ mod components;
 mod depths;
 mod determinism;
 mod efforts;
+mod ellipsoids;
 mod equiangular;
 mod extremes;
 mod faces;

@@ -163,9 +163,9 @@ pub struct Render {
 
     /// Render only the samples A to B - 1 of every pixel, for tyndall merge
     ///
-    /// Parts with other samples of the same scene, options and seed, rendered anywhere, add up to exactly the image
-    /// that one render of all samples makes. An image is written only if -o is given. Renders with --error are cut by
-    /// --crop instead.
+    /// Parts with other samples of the same scene, options and seed, rendered anywhere, add up to exactly the image of
+    /// --samples 0..N. That of --spp N may be another one: its pilot knows how few samples it prepares, and parts must all
+    /// make the same choice. An image is written only if -o is given. Renders with --error are cut by --crop instead.
     #[arg(long, value_name = "A..B", value_parser = samples, requires = "sums", allow_hyphen_values = true,
         conflicts_with_all = ["spp", "error", "batches", "frames"], help_heading = heading::SHARE)]
     pub samples: Option<Samples>,

@@ -4,7 +4,7 @@ use super::{super::references::referred, unspeakable};
 use crate::{
     description::{Object, Property, Value},
     error::Result,
-    texture,
+    format::tags::table,
 };
 use std::collections::{HashMap, HashSet};
 
@@ -49,12 +49,12 @@ pub(super) fn drop_made_up(root: &mut Object) {
 
 fn drop_below(object: &mut Object, tags: &Tags, referred: &HashSet<String>, outermost: bool) {
     let mut seen: HashMap<String, usize> = HashMap::new();
-    let texture = texture::ROWS.get(&object.plugin);
+    let table = table(object.tag.as_deref().unwrap_or_default(), &object.plugin);
     for Property { name, value, .. } in &mut object.properties {
         let Some(tag) = tag_in(value, tags) else { continue };
         let count = seen.entry(tag.to_owned()).or_default();
-        // The texture `volume` has a parameter that is called after its tag.
-        let is_parameter = texture.is_some_and(|plugin| plugin.table.find(name).is_some());
+        // Some have a parameter that is called after its tag: the `texture` of a spot, the `shape` of an irradiance meter.
+        let is_parameter = table.is_some_and(|table| table.find(name).is_some());
         let is_made_up = *name == made_up(tag, *count) && !is_parameter;
         let of_id = outermost && matches!(value, Value::Object(child) if child.id.as_ref() == Some(name));
         let is_dropped = is_made_up && !(of_id && referred.contains(name));
@@ -130,4 +130,55 @@ impl<'t> Keys<'t> {
 /// True if `name` can be a key in JSON.
 fn is_key(name: &str) -> bool {
     !name.is_empty() && !name.contains(['.', '$']) && !["type", "id"].contains(&name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        description::{Location, Position, parameter::Kind},
+        format::tags::{TAGS, tables},
+    };
+    use std::sync::Arc;
+
+    fn object(tag: &str, plugin: &str, properties: Vec<Property>) -> Object {
+        let location = Location { file: Arc::new("scene".into()), position: Position::Path(String::new()) };
+        Object { tag: Some(tag.to_owned()), plugin: plugin.to_owned(), id: None, properties, location }
+    }
+
+    /// No reader could tell what an unnamed child is for.
+    #[test]
+    fn names_of_parameters_are_never_dropped() {
+        let rows = TAGS.iter().flat_map(|tag| tables(tag).into_iter().map(move |row| (*tag, row)));
+        let mut tested = Vec::new();
+        for (tag, (plugin, table)) in rows {
+            for row in table.rows() {
+                let of = match row.kind {
+                    Kind::Object(tag) => tag,
+                    Kind::Texture(..) => "texture",
+                    Kind::Volume(..) => "volume",
+                    _ => continue,
+                };
+                let child = object(of, "anything", Vec::new());
+                let location = child.location.clone();
+                let child = Property { name: row.name.to_owned(), value: Value::Object(child), location };
+                let mut root = object(
+                    "scene",
+                    "scene",
+                    vec![Property {
+                        name: tag.to_owned(),
+                        location: child.location.clone(),
+                        value: Value::Object(object(tag, plugin, vec![child])),
+                    }],
+                );
+                drop_made_up(&mut root);
+                let Value::Object(parent) = &root.properties[0].value else { panic!() };
+                assert_eq!(parent.properties[0].name, row.name, "of {plugin}");
+                tested.extend((row.name == of).then_some(plugin));
+            }
+        }
+        for plugin in ["spot", "irradiancemeter", "volume"] {
+            assert!(tested.contains(&plugin), "{plugin}: {tested:?}");
+        }
+    }
 }

@@ -107,10 +107,10 @@ impl Writer {
         attributes.extend(object.id.as_ref().map(|id| ("id", escaped(id))));
         attributes.extend(name);
         let tag = object.tag.as_deref().unwrap_or_default();
-        let table = tags::tables(tag).into_iter().find(|(name, _)| *name == object.plugin);
+        let table = tags::table(tag, &object.plugin);
         self.element(tag, &attributes, &object.location, depth, |writer| {
             object.properties.iter().try_for_each(|property| {
-                let row = table.and_then(|(_, table)| table.find(&property.name));
+                let row = table.and_then(|table| table.find(&property.name));
                 writer.property(&typed(property, row), depth + 1)
             })
         })

@@ -155,10 +155,18 @@ impl<'a> Builder<'a> {
         at: Copying<'a>,
     ) -> Result<(Shape, bool)> {
         let world = self.world() * at.to_file;
-        let stays = ["interior", "exterior"].iter().any(|side| params.has(side))
-            || !params.children("emitter", |child| crate::emitter::ROWS.has(child.object))?.is_empty();
-        if stays {
-            return Ok((build(params, world)?, true));
+        let is_lamp = !params.children("emitter", |child| crate::emitter::ROWS.has(child.object))?.is_empty();
+        if is_lamp {
+            let lamp = build(params, world).map_err(|error| match build(params, DMat4::IDENTITY) {
+                Ok(_) => distorted(at.instance, &error),
+                Err(error) => error,
+            });
+            return lamp.map(|lamp| (lamp, true));
+        }
+        if ["interior", "exterior"].iter().any(|side| params.has(side))
+            && let Ok(shape) = build(params, world)
+        {
+            return Ok((shape, true));
         }
         let (base, is_new) = self.base(params, build)?;
         let instances = self.bases.instances;
@@ -184,6 +192,17 @@ impl<'a> Builder<'a> {
         self.parts.bases.insert(params.object.location.clone(), base.clone());
         Ok((base, is_new))
     }
+}
+
+/// `error` of a lamp that is built only without the transform of its `instance`. Points of it could not be drawn evenly.
+fn distorted(instance: &Object, error: &Error) -> Error {
+    let expected = format!("{}, for the group has an emitter on it", error.expected);
+    Error::new(
+        &instance.location,
+        expected,
+        &error.found,
+        "use one scale for all axes, or a mesh as the lamp",
+    )
 }
 
 fn is_group(object: &Object) -> bool {

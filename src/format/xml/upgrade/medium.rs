@@ -23,7 +23,7 @@ const MATERIALS: [(&str, [f64; 3], [f64; 3]); 12] = [
     ("wholemilk", [2.55, 3.21, 3.77], [0.0011, 0.0024, 0.014]),
 ];
 
-/// Mitsuba 0.6 takes so many of a scene's 1/m for 1/mm.
+/// Mitsuba 0.6 takes a scene's unit of length for so many mm.
 const UNIT: f64 = 100.0;
 
 /// Gives `object`, if it is a medium, today's coefficients.
@@ -63,7 +63,8 @@ fn material(object: &mut Object) -> Result<()> {
         ));
     };
     let text = format!(
-        "\"{name}\" has the coefficients of Mitsuba 0.6: 1/mm, measured, count {UNIT} of the scene's 1/m"
+        "\"{name}\" stands for coefficients that were measured in 1/mm: as in Mitsuba 0.6, a unit of length of the scene \
+         is taken for {UNIT} mm"
     );
     object.properties.push(note(text, &location));
     for (name, values) in [("sigma_s", scattering), ("sigma_a", absorption)] {
