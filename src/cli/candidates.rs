@@ -1,7 +1,7 @@
 //! What a pilot predicts for its candidates: for `info --pilot`.
 
 use super::{plan, provenance};
-use crate::learning::pilot::{DENOISED, Foretold, LEARNT, Report, WORTHWHILE};
+use crate::learning::pilot::{DENOISED, Foretold, GUIDED, LEARNT, Report, WORTHWHILE};
 use serde_json::{Value, json};
 
 /// How many are shown.
@@ -12,6 +12,11 @@ pub(super) fn table(report: &Report) -> String {
     let Report { candidates, samples, choice } = report;
     if candidates.is_empty() {
         return "pilot       none: nothing emits light, or too few samples are to come".to_owned();
+    }
+    if candidates.iter().all(|one| !one.judgement.is_finite()) {
+        return format!(
+            "pilot       {samples:.0} samples, none of which saw light: all strategies run alike"
+        );
     }
     let mut lines = vec![
         format!(
@@ -27,6 +32,10 @@ pub(super) fn table(report: &Report) -> String {
     );
     lines.push(format!(
         "            Longer walks beside light subpaths, and equiangular sampling, must be {WORTHWHILE} times better, learnt starts {LEARNT} times."
+    ));
+    let [alone, connected] = GUIDED;
+    lines.push(format!(
+        "            A guide, which has a pilot of its own, must be {connected} times better, {alone} times without light subpaths."
     ));
     lines.push(format!(
         "            In images for a denoiser, light subpaths must be {DENOISED} times better: it removes less of their noise."

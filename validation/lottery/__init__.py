@@ -35,6 +35,7 @@ OTHERS = {
     "alike": ALIKE,
     "alike, starts": f"{ALIKE} --starts learnt",
     "alike, guide": f"{ALIKE} --guide auto",
+    "alike, guide and starts": f"{ALIKE} --guide always --starts learnt",
     "LW96": f"{ALIKE} --connections all",
     "no guide": f"{BDPT} --guide never",
     "no guide, starts": f"{BDPT} --guide never --starts emitted",

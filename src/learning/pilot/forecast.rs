@@ -280,10 +280,13 @@ impl Forecast {
         means
     }
 
-    /// Variances over squared means of the tiles that were seen, times their pixels.
+    /// Variances over squared means of the tiles that were seen, times their pixels; infinite if none showed light.
     fn relative(&self, moments: &[f64], squared_means: &[f64]) -> Vec<f64> {
         let pixels: f64 = self.seen().map(|(_, tile)| tile.pixels).sum();
         let mean = self.seen().map(|(_, tile)| tile.pixels * tile.mean).sum::<f64>() / pixels.max(1.0);
+        if mean == 0.0 {
+            return self.seen().map(|_| f64::INFINITY).collect();
+        }
         let floor = 0.01 * mean * mean;
         let relative = |(index, tile): (usize, &Tile)| {
             let variance = (moments[index] - squared_means[index]).max(LEAST_VARIANCE * moments[index]);

@@ -1,0 +1,234 @@
+//! Pilots against the noise of images, and what they choose in small scenes.
+
+use super::{
+    forecast::Tile,
+    record::{Ends, Found, Work},
+    *,
+};
+use crate::{
+    format,
+    math::SpectrumExt,
+    passes::budget::Budget,
+    render::instrument::Instrument,
+    scene::build::{self, Setup},
+    settings::Overrides,
+    transport::profiles::ProfileName,
+};
+use std::path::Path;
+
+/// A small image of a scene of the repository, by `strategies`.
+fn small(scene: &str, strategies: Strategies) -> (Setup, Settings) {
+    read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene), strategies)
+}
+
+/// The same of a room with a lamp in a black tube, which has one end in the floor.
+fn with_tube(length: f64) -> (Setup, Settings) {
+    let end = length - 1.0;
+    let text = format!(
+        r#"{{"type": "scene", "camera": {{"type": "perspective", "to_world": [{{"type": "lookat", "origin": [0, 0, 0.9], "target": [0, 0, -1]}}]}},
+        "room": {{"type": "cube", "flip_normals": true, "bsdf": {{"type": "diffuse", "reflectance": 0.6}}}},
+        "tube": {{"type": "cylinder", "p0": [0.3, -1, 0], "p1": [0.3, {end}, 0], "radius": 0.015, "bsdf": {{"type": "twosided", "bsdf": {{"type": "diffuse", "reflectance": 0}}}}}},
+        "lamp": {{"type": "sphere", "center": [0.3, -0.98, 0], "radius": 0.01, "emitter": {{"type": "area"}}}}}}"#
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.json");
+    std::fs::write(&path, text).unwrap();
+    read(&path, Strategies::BDPT)
+}
+
+fn read(path: &Path, strategies: Strategies) -> (Setup, Settings) {
+    let overrides = Overrides { size: Some((24, 24)), ..Overrides::default() };
+    let setup = build::build(&format::read(path, &[]).unwrap(), overrides).unwrap();
+    let options = Options { strategies, ..setup.integrator.options };
+    let (sampler, budget) = (Sampler::Independent, Budget::ENDLESS);
+    (
+        setup,
+        Settings {
+            options,
+            sampler,
+            film_samples: FilmSamples::Own,
+            budget,
+            seed: 0,
+            profile: ProfileName::Everything,
+        },
+    )
+}
+
+/// The pilot of an image without end, with learnt starts or without.
+fn flown(setup: &Setup, settings: &Settings, learnt_starts: bool) -> Forecast {
+    let among = settings.options.strategies;
+    let base = Choice { among, strategies: among, effort: Effort::default(), gain: 1.0 };
+    let Setup { scene, film, .. } = setup;
+    Pilots { scene, film, settings, decided: Decided::default(), base, work: f64::INFINITY }
+        .fly(learnt_starts)
+}
+
+#[test]
+fn light_subpaths_must_be_better_for_a_denoiser() {
+    let (Setup { scene, film, .. }, settings) = &small("efficiency/glass_fog_sky.xml", Strategies::BDPT);
+    let judgement = |film_samples, strategies| {
+        let choice = Choice { among: Strategies::BDPT, strategies, effort: Effort::default(), gain: 1.0 };
+        let (settings, decided) = (&Settings { film_samples, ..*settings }, Decided::default());
+        let pilots = Pilots { scene, film, settings, decided, base: choice, work: f64::INFINITY };
+        let error = Error { usual: 1.0, few: 0.0 };
+        pilots.judge(&Foretold { choice, error, time: 1.0, judgement: f64::INFINITY }, 0.0)
+    };
+    let ratio =
+        |strategies| judgement(FilmSamples::Apart, strategies) / judgement(FilmSamples::Own, strategies);
+    assert_eq!([Strategies::BDPT, Strategies::PT].map(ratio), [DENOISED, 1.0]);
+}
+
+#[test]
+fn path_tracing_has_no_light_starts_to_learn() {
+    let (setup, settings) = small("efficiency/glass_fog_sky.xml", Strategies::PT);
+    assert_eq!(flown(&setup, &settings, false).seen_subpaths(), None);
+}
+
+fn chosen((setup, settings): &(Setup, Settings), samples_per_pixel: u64) -> Report {
+    let settings = Settings { budget: Budget::samples(samples_per_pixel), ..*settings };
+    choose(&setup.scene, &setup.film, &settings, Decided::default())
+}
+
+/// The tube goes up to the ceiling.
+#[test]
+fn without_any_light_all_strategies_run_alike() {
+    let found = chosen(&with_tube(2.0), 64);
+    assert!(!found.candidates.is_empty());
+    assert!(found.candidates.iter().all(|one| one.judgement == f64::INFINITY), "{:?}", found.candidates);
+    assert_eq!(found.choice.strategies, Strategies::BDPT);
+    assert_eq!(found.choice.effort, Effort { guide: Guiding::Never, ..Effort::default() });
+}
+
+#[test]
+fn light_from_a_tube_is_worth_a_guide() {
+    assert_eq!(chosen(&with_tube(0.8), 1000).choice.effort.guide, Guiding::Always);
+}
+
+/// The same samples cost more if they follow a guide, and everything if they saw no light.
+#[test]
+fn guides_must_be_better_than_they_are_slow() {
+    let costs = |(setup, settings): &(Setup, Settings), strategies| {
+        let cost = |guide| {
+            let effort = Effort { guide, ..Effort::default() };
+            let base = Choice { among: strategies, strategies, effort, gain: 1.0 };
+            let Setup { scene, film, .. } = setup;
+            let decided = Decided::default();
+            Pilots { scene, film, settings, decided, base, work: f64::INFINITY }
+                .cost(&flown(setup, settings, false))
+        };
+        [Guiding::Always, Guiding::Never].map(cost)
+    };
+    let lit = small("lampbox_down.xml", Strategies::BDPT);
+    for (strategies, slower) in [(Strategies::PT, GUIDED[0]), (Strategies::BDPT, GUIDED[1])] {
+        let [guided, usual] = costs(&lit, strategies);
+        assert!((guided / usual - slower).abs() < 1e-9, "{guided} {usual}");
+    }
+    assert_eq!(costs(&with_tube(2.0), Strategies::BDPT), [f64::INFINITY; 2]);
+}
+
+/// What takes longer than it can gain is left out; what it takes else is a small part of the samples to come.
+#[test]
+fn pilots_are_sized_by_the_work_to_come() {
+    let (setup, settings) = small("efficiency/glass_fog_sky.xml", Strategies::BDPT);
+    let samples = |each: u64| {
+        let settings = Settings { budget: Budget::samples(each), ..settings };
+        choose(&setup.scene, &setup.film, &settings, Decided::default()).samples
+    };
+    let pixels = setup.film.len() as f64;
+    assert_eq!(samples(16), 0.0);
+    for each in [64, 256, 1024] {
+        let (found, work) = (samples(each), each as f64 * pixels);
+        assert!(found > 0.0 && found <= 1.5 * (SHARE * work).max(LEAST), "{each}: {found}");
+    }
+    assert!(samples(1 << 20) <= MOST);
+}
+
+/// Relative variance of pixel samples, as their images show it, but in the few pixels with the greatest.
+fn measured(instrument: &Instrument<'_>) -> f64 {
+    let mut sums = vec![(0.0, 0.0); instrument.film.len()];
+    let n = 400.0;
+    instrument.passes(0..n as usize, &mut |image| {
+        for ((sum, square), value) in sums.iter_mut().zip(image) {
+            let luminance = f64::from(value.luminance());
+            *sum += luminance;
+            *square += luminance * luminance;
+        }
+    });
+    let mean = sums.iter().map(|(sum, _)| sum / n).sum::<f64>() / sums.len() as f64;
+    let relative = |(sum, square): &(f64, f64)| {
+        let of_pixel = sum / n;
+        (square / n - of_pixel * of_pixel) / (of_pixel * of_pixel + 0.01 * mean * mean)
+    };
+    let mut all: Vec<f64> = sums.iter().map(relative).collect();
+    all.sort_unstable_by(f64::total_cmp);
+    all[..(0.98 * sums.len() as f64) as usize].iter().sum::<f64>() / sums.len() as f64
+}
+
+/// A corner of the image that other strategies do not see decides against them, however small.
+#[test]
+fn what_a_choice_leaves_out_is_no_outlier() {
+    let found = |sample, kind, shares| Found {
+        pixel: 0,
+        square: 1.0,
+        shares,
+        ends: Ends::default(),
+        unlearnt: 1.0,
+        without_sky: 1.0,
+        kind,
+        expected: 1.0,
+        sample,
+    };
+    let tile = Tile { pixels: 1.0, samples: 1.0, mean: 0.7 };
+    let alone = |kind| StrategyKind::each(|one| if one == kind { 1.0 } else { 0.0 });
+    let corner = |tile| if tile == 7 { StrategyKind::Lens } else { StrategyKind::EmitterHit };
+    let found = (0..100).map(|tile| (tile, found(tile, corner(tile), alone(corner(tile))))).collect();
+    let work = [Work { walks: 1.0, ..Work::default() }; WALKS_END.len()];
+    let forecast = Forecast {
+        tiles: vec![tile; 100],
+        pixels: Vec::new(),
+        found,
+        camera: work,
+        light: work,
+        light_unlearnt: work,
+        is_learnt: false,
+        survival: Survival::Albedo,
+    };
+    let effort = Effort::default();
+    let all = Choice { among: Strategies::BDPT, strategies: Strategies::BDPT, effort, gain: 1.0 };
+    let [whole, part] = [Strategies::BDPT, Strategies::PT]
+        .map(|strategies| forecast.judge(&[Choice { strategies, ..all }])[0].all());
+    assert!(whole < 10.0);
+    assert_eq!(part, f64::INFINITY);
+}
+
+/// From the samples of all strategies, the noise of others is known before they run, and of walks that end sooner.
+#[test]
+fn pilots_foresee_the_noise_of_other_counts() {
+    for scene in ["lampbox_down.xml", "efficiency/glass_fog_sky.xml"] {
+        let (setup, settings) = small(scene, Strategies::BDPT);
+        let forecast = flown(&setup, &settings, true);
+        let (among, effort) = (Strategies::BDPT, Effort::default());
+        let all = Choice { among, strategies: among, effort, gain: 1.0 };
+        let four = Effort { connections: 4, ..all.effort };
+        let longer = Effort { survival: Survival::FourthRoot, ..all.effort };
+        let choices = [
+            all,
+            Choice { strategies: Strategies::PT, ..all },
+            Choice { effort: four, ..all },
+            Choice { effort: longer, ..all },
+            Choice { strategies: Strategies::PT, effort: longer, ..all },
+            Choice { effort: Effort { connections: 4, ..longer }, ..all },
+        ];
+        let relative: Vec<f64> = choices
+            .iter()
+            .zip(forecast.judge(&choices))
+            .map(|(Choice { strategies, effort, .. }, error)| {
+                let options = Options { strategies: *strategies, effort: *effort, ..settings.options };
+                let settings = Settings { options, ..settings };
+                error.usual / measured(&Instrument::new(&setup.scene, &setup.film, &settings))
+            })
+            .collect();
+        let near = relative.iter().all(|one| (0.6..1.7).contains(&(one / relative[0])));
+        assert!(near, "{scene}: {relative:?}");
+    }
+}
