@@ -33,9 +33,8 @@ pub(super) fn table(report: &Report) -> String {
     lines.push(format!(
         "            Longer walks beside light subpaths, and equiangular sampling, must be {WORTHWHILE} times better, learnt starts {LEARNT} times."
     ));
-    let [alone, connected] = GUIDED;
     lines.push(format!(
-        "            A guide, which has a pilot of its own, must be {connected} times better, {alone} times without light subpaths."
+        "            A guide beside light subpaths has a pilot of its own and must be {GUIDED} times better."
     ));
     lines.push(format!(
         "            In images for a denoiser, light subpaths must be {DENOISED} times better: it removes less of their noise."

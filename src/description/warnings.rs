@@ -2,7 +2,7 @@
 
 use std::{collections::HashSet, path::Path};
 
-/// A text that is true of more places than this names one of them and their number.
+/// So many places are named, and the others counted.
 const NAMED: usize = 3;
 
 /// Warnings in the order in which they came up.
@@ -15,12 +15,14 @@ struct Warning {
     /// The first ones.
     named: Vec<String>,
     places: HashSet<String>,
+    /// It is all there is to say of a file.
+    is_note: bool,
 }
 
 impl Warnings {
     /// Adds `text`, which is true of `place`.
     pub(super) fn add(&mut self, place: String, text: &str) {
-        let known = self.0.iter().position(|warning| warning.text == text);
+        let known = self.0.iter().position(|warning| !warning.is_note && warning.text == text);
         let at = known.unwrap_or_else(|| {
             self.0.push(Warning { text: text.to_owned(), ..Warning::default() });
             self.0.len() - 1
@@ -31,10 +33,14 @@ impl Warnings {
     /// Adds `text` to what there is to say of a `file`, all of which is one warning.
     pub(super) fn note(&mut self, file: &Path, text: &str) {
         let place = file.display().to_string();
-        match self.0.iter_mut().find(|warning| warning.named == [place.as_str()]) {
-            None => self.add(place, text),
-            Some(warning) if warning.text.contains(text) => {}
-            Some(warning) => warning.text = format!("{}; {text}", warning.text),
+        match self.0.iter_mut().find(|warning| warning.is_note && warning.named == [place.as_str()]) {
+            None => {
+                let mut note = Warning { text: text.to_owned(), is_note: true, ..Warning::default() };
+                note.add(place);
+                self.0.push(note);
+            }
+            Some(note) if note.text.split("; ").any(|said| said == text) => {}
+            Some(note) => note.text = format!("{}; {text}", note.text),
         }
     }
 
@@ -52,10 +58,10 @@ impl Warning {
     }
 
     fn into_lines(self) -> Vec<String> {
-        let Self { text, named, places } = self;
+        let Self { text, named, places, .. } = self;
         match places.len() {
             ..=NAMED => named.iter().map(|place| format!("{place}: {text}")).collect(),
-            count => vec![format!("{}: {text} (and in {} other places)", named[0], count - 1)],
+            count => vec![format!("{} and {} more: {text}", named.join(", "), count - NAMED)],
         }
     }
 }
@@ -74,14 +80,16 @@ mod tests {
         warnings.note(Path::new("a.ply"), "one thing");
         warnings.note(Path::new("a.ply"), "another");
         warnings.note(Path::new("a.ply"), "one thing");
+        warnings.note(Path::new("b.ply"), "one thing");
         assert_eq!(
             warnings.into_lines(),
             [
-                "line 0: a mirrored axis (and in 9999 other places)",
+                "line 0, line 1, line 2 and 9997 more: a mirrored axis",
                 "line 0: a zero",
                 "line 1: a zero",
                 "line 2: a zero",
                 "a.ply: one thing; another",
+                "b.ply: one thing",
             ]
         );
     }

@@ -231,7 +231,7 @@ fn accumulate(
                 (monitor.watch)(sums.progress(elapsed, false), sums);
             });
             next += done;
-            // `done` does not tell where all tasks are one, as those of a moving scene on one block: that is always done.
+            // A moving scene on one block has one task per call, which always finishes: by `done` alone, it would never end.
             next == queue.end || done < tasks.len() || is_over()
         })?;
         let (elapsed, samples_per_pixel) = (stopwatch.elapsed(), sums.samples.count());

@@ -10,7 +10,6 @@ mod components;
 mod depths;
 mod determinism;
 mod efforts;
-mod ellipsoids;
 mod equiangular;
 mod extremes;
 mod faces;

@@ -82,9 +82,10 @@ pub struct Estimator {
     /// When path guiding is used: walks sample directions that training found to bring light
     /// [default: the scene's, or auto with gather and with the pilot of bdpt, else never]
     ///
-    /// auto: where the first quarter of the training shows that it pays. It does where light comes through a small opening, such
-    /// as a keyhole, and for pt where light comes round corners. bdpt tries it only in noisy scenes, and only for images of a
-    /// million samples or more over all pixels. always: in any case. Training takes about a second before the first sample. It
+    /// auto: where it pays. It does where light comes through a small opening, such as a keyhole, and for pt where light comes
+    /// round corners. For bdpt, a pilot that follows a guide is held against one that does not; else the first quarter of the
+    /// training decides. Both are tried only in noisy scenes, and only for images of two million samples or more over all
+    /// pixels, in very noisy ones of 250,000. always: in any case. Training takes about a second before the first sample. It
     /// goes on during long renders, except with --error. The expected image is the same. Needs the heuristic balance.
     #[arg(long, value_name = "WHEN", value_parser = one_of(&Guiding::NAMES))]
     pub guide: Option<Guiding>,

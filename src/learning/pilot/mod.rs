@@ -67,10 +67,10 @@ const STARTS_NOISE: f64 = 1.0;
 /// 4. Where a guide is learnt in vain, it takes half as much again as these rounds.
 const GUIDE_SHARES: [(f64, f64); 2] = [(2.0, 0.05), (15.0, 0.4)];
 
-/// Time of samples that follow a guide, over that of others: of camera subpaths alone, and of both kinds, whose
-/// connections look it up at both ends. In 30 scenes drawn at random, pilots judged the best choice with a guide 1.7, 5
-/// and infinitely many times better where it was 4, 7 and 50 times better, and at most 1.4 times where it did not pay.
-pub const GUIDED: [f64; 2] = [1.2, 1.5];
+/// A guide must be better by this factor, which is about how much longer samples take that follow one: connections look
+/// it up at both ends. In 30 scenes drawn at random, pilots judged the best choice with a guide 1.7, 5 and infinitely
+/// many times better where it was 4, 7 and 50 times better, and at most 1.4 times where it did not pay.
+pub const GUIDED: f64 = 1.5;
 
 /// When walks end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -172,32 +172,34 @@ struct Pilots<'a> {
 }
 
 impl Pilots<'_> {
-    /// The best choice; with a guide if one `asks` for it and a pilot with it is so much better.
+    /// The best choice; with a guide if one `asks` for it and it pays.
     fn choose(&self, asks: bool) -> Report {
         let first = self.fly(self.base.effort.learnt_starts);
         let error = first.error_where_lit(&self.base);
         let pilot = if self.may_learn_starts(&first, error) { self.fly(true) } else { first };
-        if asks && self.may_guide(error) {
-            let effort = Effort { guide: Guiding::Always, ..self.base.effort };
-            let guided = Self { base: Choice { effort, ..self.base }, ..*self };
-            let follower = guided.fly(self.decided.starts.unwrap_or(self.base.strategies.need_light_walks()));
-            if guided.cost(&follower) < self.cost(&pilot) {
-                return guided.report(&follower);
-            }
+        let guided = || if asks && self.may_guide(error) { self.guided(&pilot) } else { None };
+        guided().unwrap_or_else(|| self.report(&pilot))
+    }
+
+    /// The best choice with a guide, if it pays. Beside light subpaths, a pilot that follows it must do better than the
+    /// `usual` one. A guide of camera subpaths alone makes paths brighter that it did not foresee, and pilots see too
+    /// few of these: training judges it.
+    fn guided(&self, usual: &Forecast) -> Option<Report> {
+        let effort = Effort { guide: Guiding::Always, ..self.base.effort };
+        let guided = Self { base: Choice { effort, ..self.base }, ..*self };
+        if !self.base.strategies.need_light_walks() {
+            let pays = training::guide_pays(self.scene, self.film, self.settings.options);
+            return pays.then(|| guided.choose(false));
         }
-        self.report(&pilot)
+        let follower = guided.fly(self.decided.starts.unwrap_or(true));
+        let pays = GUIDED * guided.cost(&follower) < self.cost(usual);
+        pays.then(|| guided.report(&follower))
     }
 
     /// Error x time of all strategies alike as `pilot` saw them, with learnt starts where these are better. No choice is
     /// made that chance could favour: where light is rare, a few paths are all that is known.
     fn cost(&self, pilot: &Forecast) -> f64 {
-        let [alone, connected] = GUIDED;
-        let slower = match (self.base.effort.guide, self.base.strategies.need_light_walks()) {
-            (Guiding::Always, true) => connected,
-            (Guiding::Always, false) => alone,
-            _ => 1.0,
-        };
-        let cost = |choice: Choice| slower * pilot.error_where_lit(&choice) * pilot.time(&choice);
+        let cost = |choice: Choice| pilot.error_where_lit(&choice) * pilot.time(&choice);
         let learnt = Choice { effort: Effort { learnt_starts: true, ..self.base.effort }, ..self.base };
         if pilot.is_learnt { cost(learnt).min(cost(self.base)) } else { cost(self.base) }
     }

@@ -155,18 +155,14 @@ impl<'a> Builder<'a> {
         at: Copying<'a>,
     ) -> Result<(Shape, bool)> {
         let world = self.world() * at.to_file;
-        let is_lamp = !params.children("emitter", |child| crate::emitter::ROWS.has(child.object))?.is_empty();
-        if is_lamp {
-            let lamp = build(params, world).map_err(|error| match build(params, DMat4::IDENTITY) {
-                Ok(_) => distorted(at.instance, &error),
+        let stays = ["interior", "exterior"].iter().any(|side| params.has(side))
+            || !params.children("emitter", |child| crate::emitter::ROWS.has(child.object))?.is_empty();
+        if stays {
+            let shape = build(params, world).map_err(|error| match build(params, DMat4::IDENTITY) {
+                Ok(_) => distorted(at.instance, error),
                 Err(error) => error,
             });
-            return lamp.map(|lamp| (lamp, true));
-        }
-        if ["interior", "exterior"].iter().any(|side| params.has(side))
-            && let Ok(shape) = build(params, world)
-        {
-            return Ok((shape, true));
+            return shape.map(|shape| (shape, true));
         }
         let (base, is_new) = self.base(params, build)?;
         let instances = self.bases.instances;
@@ -194,15 +190,12 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// `error` of a lamp that is built only without the transform of its `instance`. Points of it could not be drawn evenly.
-fn distorted(instance: &Object, error: &Error) -> Error {
-    let expected = format!("{}, for the group has an emitter on it", error.expected);
-    Error::new(
-        &instance.location,
-        expected,
-        &error.found,
-        "use one scale for all axes, or a mesh as the lamp",
-    )
+/// `error` of a shape with a medium or an emitter that only its `instance` makes wrong.
+fn distorted(instance: &Object, error: Error) -> Error {
+    let found = format!("{}; it is seen in the instance at {}", error.found, instance.location);
+    let remedy =
+        format!("{}. Only shapes without medium and emitter may be distorted in an instance", error.remedy);
+    Error { found, remedy, ..error }
 }
 
 fn is_group(object: &Object) -> bool {

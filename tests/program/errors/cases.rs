@@ -460,6 +460,7 @@ pub(super) fn all() -> Vec<Case> {
         Case::json("a group without shapes", r#""g": {"type": "shapegroup", "id": "g"}, "b": {"type": "instance", "c": {"type": "ref", "id": "g"}}, "sky": {"type": "constant"}"#),
         Case::json("an instance that is flat", r#""g": {"type": "shapegroup", "id": "g", "a": {"type": "sphere"}}, "b": {"type": "instance", "to_world": [{"type": "scale", "value": [1, 0, 1]}], "c": {"type": "ref", "id": "g"}}, "sky": {"type": "constant"}"#),
         Case::json("a lamp that an instance distorts", r#""g": {"type": "shapegroup", "id": "g", "a": {"type": "sphere", "emitter": {"type": "area"}}}, "b": {"type": "instance", "to_world": [{"type": "scale", "value": [1, 2, 1]}], "c": {"type": "ref", "id": "g"}}"#),
+        Case::json("a ball of fog that an instance distorts", r#""g": {"type": "shapegroup", "id": "g", "a": {"type": "sphere", "interior": {"type": "homogeneous"}}}, "b": {"type": "instance", "to_world": [{"type": "scale", "value": [1, 2, 1]}], "c": {"type": "ref", "id": "g"}}, "sky": {"type": "constant"}"#),
         Case::json("a group that no instance refers to", r#""g": {"type": "shapegroup", "id": "g", "a": {"type": "sphere"}}, "sky": {"type": "constant"}"#).warned(),
         Case::json("a merge with a transform of its own", r#""m": {"type": "merge", "to_world": [{"type": "scale", "value": 2}], "a": {"type": "sphere"}}, "sky": {"type": "constant"}"#),
         Case::json("flakes without a matrix", r#""fog": {"type": "homogeneous", "phase": {"type": "sggx"}}"#),
