@@ -9,11 +9,12 @@ use crate::{
     bsdf::Transport,
     error::Result,
     film,
-    guide::{self, Guide, Learnt},
+    guide::{Guide, Learnt},
     learning::training,
     math::{Spectrum, Vec3, srgb::Srgb, vec2, vec3, warp},
     passes::Settings,
     render::instrument::Instrument,
+    sampling::portal,
     scene::{Scene, build::Setup, lights::Starts},
     transport::Interaction,
 };
@@ -78,7 +79,7 @@ pub struct Portal {
 }
 
 /// How often light subpaths start at an emitter.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Start {
     /// Its number among all emitters.
     pub emitter: usize,
@@ -86,6 +87,8 @@ pub struct Start {
     pub unlearnt: f32,
     /// The same with it.
     pub learnt: f32,
+    /// Openings that a part of them aims at.
+    pub portals: Vec<Portal>,
 }
 
 /// A cell that pixels see.
@@ -151,18 +154,18 @@ fn report(scene: &Scene, learnt: &Learnt, cells: &[SeenCell], seconds: f64) -> R
         second_moment: guide.map_or(1.0, |guide| guide.second_moment),
         surfaces: kind(0, of_surfaces),
         media: kind(of_surfaces, all),
-        portals: guide.map_or(Vec::new(), |guide| portals(scene, guide)),
+        portals: guide.map_or(Vec::new(), |guide| portals(scene, guide.portals().iter())),
         starts: learnt.starts.as_deref().map_or(Vec::new(), |starts| most_started(scene, starts)),
         seen: guide.map_or(Vec::new(), |guide| seen(guide, cells)),
     }
 }
 
-fn portals(scene: &Scene, guide: &Guide) -> Vec<Portal> {
-    let placed = |portal: &guide::Portal| Portal {
+fn portals<'a>(scene: &Scene, portals: impl Iterator<Item = &'a portal::Portal>) -> Vec<Portal> {
+    let placed = |portal: &portal::Portal| Portal {
         centre: (portal.smallest.centre.as_dvec3() + scene.recentre).to_array(),
         radius: portal.smallest.radius_squared.sqrt(),
     };
-    guide.portals().iter().map(placed).collect()
+    portals.map(placed).collect()
 }
 
 fn most_started(scene: &Scene, starts: &Starts) -> Vec<Start> {
@@ -170,6 +173,7 @@ fn most_started(scene: &Scene, starts: &Starts) -> Vec<Start> {
         emitter,
         unlearnt: scene.lights.start_probability(emitter),
         learnt: starts.probability(&scene.lights, emitter),
+        portals: portals(scene, starts.portals(emitter)),
     };
     let mut all: Vec<Start> = (0..scene.lights.all.len()).map(start).collect();
     all.sort_by(|a, b| b.learnt.total_cmp(&a.learnt));

@@ -71,24 +71,32 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
 
 /// A few lines.
 fn described(report: &Report) -> String {
-    let Report { seconds, bytes, surfaces, media, second_moment, portals, .. } = report;
-    if surfaces.cells + media.cells == 0 {
-        return format!("learnt in {seconds:.1} s: nothing that walks could follow");
-    }
+    let Report { seconds, bytes, surfaces, media, second_moment, portals, starts, .. } = report;
     let kind = |name: &str, Cells { cells, guided: [camera, light] }: &Cells| {
         let [camera, light] = [camera, light].map(|part| format!("{:.0} %", 100.0 * part));
         format!(
             "{name:10} {cells} cells; of the directions, {camera} of the camera's walks and {light} of light's are guided"
         )
     };
-    let portal = |Portal { centre: [x, y, z], radius }: &Portal| {
-        format!("portal     of radius {radius:.3} around {x:.3}, {y:.3}, {z:.3}")
+    let place = |Portal { centre: [x, y, z], radius }: &Portal| {
+        format!("of radius {radius:.3} around {x:.3}, {y:.3}, {z:.3}")
     };
-    let lines = [
-        format!("learnt     in {seconds:.1} s, {:.1} MiB", *bytes as f64 / f64::from(1 << 20)),
-        kind("surfaces", surfaces),
-        kind("media", media),
-        format!("moments    {second_moment:.2} of the second moment of what walks bring is left"),
-    ];
-    lines.into_iter().chain(portals.iter().map(portal)).collect::<Vec<_>>().join("\n")
+    let portal = |portal: &Portal| format!("portal     {}", place(portal));
+    let aimed = starts.iter().flat_map(|start| {
+        let light = start.emitter;
+        start
+            .portals
+            .iter()
+            .map(move |portal| format!("starts     of emitter {light} at a portal {}", place(portal)))
+    });
+    let lines = match surfaces.cells + media.cells {
+        0 => vec![format!("learnt in {seconds:.1} s: nothing that walks could follow")],
+        _ => vec![
+            format!("learnt     in {seconds:.1} s, {:.1} MiB", *bytes as f64 / f64::from(1 << 20)),
+            kind("surfaces", surfaces),
+            kind("media", media),
+            format!("moments    {second_moment:.2} of the second moment of what walks bring is left"),
+        ],
+    };
+    lines.into_iter().chain(portals.iter().map(portal)).chain(aimed).collect::<Vec<_>>().join("\n")
 }

@@ -2,13 +2,14 @@
 //! that is left to the BSDF or the phase function.
 
 use super::{
-    Lesson, Portal,
+    Lesson,
     links::{Aims, Links},
 };
 use crate::{
     math::{Vec3, warp},
     sampling::{
         Basis, Quadtree, Stream,
+        portal::{Aimed, Portal},
         quadtree::{Deposit, effective},
     },
 };
@@ -18,11 +19,6 @@ use crate::{
 const BSDF_FRACTIONS: [f32; 4] = [0.5, 0.65, 0.8, 1.0];
 /// Fewest directions, as [`effective`] counts them, that can be learnt from.
 pub(super) const ENOUGH: f64 = 32.0;
-/// Least part of a cell's directions that aims at each portal: where few were seen to pass through it, these few would
-/// else weigh as much as without a guide.
-const LEAST_AIMED: f32 = 0.05;
-/// Largest part that aims at portals.
-const MOST_AIMED: f32 = 0.5;
 
 /// The directions of a cell; the shares sum to 1.
 #[derive(Clone, Debug)]
@@ -30,7 +26,7 @@ pub(super) struct Directions {
     /// The share of the BSDF or the phase function.
     pub unguided: f32,
     /// The shares that aim at portals.
-    aimed: Vec<(f32, Portal)>,
+    aimed: Aimed,
     /// The share of a table, if there is one.
     tabled: Option<(f32, Table)>,
 }
@@ -55,9 +51,10 @@ pub(super) struct Tabulator<'a> {
 impl Directions {
     /// None where directions are better left to the BSDF or the phase function.
     pub(super) fn learn(lessons: &[&Lesson], portals: &[Portal], tabulator: Tabulator<'_>) -> Option<Self> {
-        let aimed = aimed(lessons, portals);
-        let rest = 1.0 - aimed.iter().map(|(share, _)| share).sum::<f32>();
-        let is_aimed = |lesson: &&Lesson| portals.iter().any(|portal| portal.outermost().is_crossed(lesson));
+        let aimed = Aimed::of(portals, lessons.iter().map(|lesson| lesson.passage()));
+        let rest = 1.0 - aimed.share();
+        let is_aimed =
+            |lesson: &&Lesson| portals.iter().any(|portal| lesson.passage().crosses(&portal.outermost()));
         let others: Vec<&Lesson> = lessons.iter().copied().filter(|lesson| !is_aimed(lesson)).collect();
         let is_known = effective(others.iter().map(|lesson| lesson.weight)) >= ENOUGH;
         let a = if is_known { part_unguided(&others, tabulator) } else { 1.0 };
@@ -70,10 +67,9 @@ impl Directions {
     /// Density of unit `direction` from `position` among the guided ones, times their share (1/sr).
     #[inline]
     pub(super) fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
-        let aimed = self.aimed.iter().map(|(share, portal)| share * portal.pdf(position, direction));
         let tabled =
             self.tabled.as_ref().map_or(0.0, |(share, table)| share * table.pdf(position, direction));
-        tabled + aimed.sum::<f32>()
+        tabled + self.aimed.pdf(|portal| portal.pdf(position, direction))
     }
 
     /// A unit direction from `position`; none where it is left to the BSDF or the phase function.
@@ -84,36 +80,16 @@ impl Directions {
             return None;
         }
         u -= self.unguided;
-        for (share, portal) in &self.aimed {
-            if u < *share {
-                return Some(portal.sample(position, stream));
-            }
-            u -= share;
+        if let Some(portal) = self.aimed.choose(&mut u) {
+            return Some(portal.sample(position, stream));
         }
         self.tabled.as_ref().map(|(_, table)| table.sample(position, stream))
     }
 
     /// Memory that it takes (bytes).
     pub(super) fn bytes(&self) -> usize {
-        size_of_val(&self.aimed[..]) + self.tabled.as_ref().map_or(0, |(_, table)| table.bytes())
+        self.aimed.bytes() + self.tabled.as_ref().map_or(0, |(_, table)| table.bytes())
     }
-}
-
-/// Shares of directions that aim at each of `portals`: in proportion to the `lessons` through it, in balance with the
-/// others.
-fn aimed(lessons: &[&Lesson], portals: &[Portal]) -> Vec<(f32, Portal)> {
-    let mut aimed: Vec<(f32, Portal)> = portals.iter().map(|portal| (0.0, *portal)).collect();
-    for lesson in lessons {
-        if let Some((sum, _)) = aimed.iter_mut().find(|(_, portal)| portal.outermost().is_crossed(lesson)) {
-            *sum += lesson.weight;
-        }
-    }
-    let total: f32 = lessons.iter().map(|lesson| lesson.weight).sum();
-    let share = |sum: f32| if total > 0.0 { sum / total } else { 0.0 };
-    aimed.iter_mut().for_each(|(sum, _)| *sum = share(*sum).max(LEAST_AIMED));
-    let all: f32 = aimed.iter().map(|(share, _)| share).sum();
-    aimed.iter_mut().for_each(|(share, _)| *share *= (MOST_AIMED / all).min(1.0));
-    aimed
 }
 
 /// Chooses a, by the second moment of each half of the `lessons` under a table of the other half; 1 where there is no
@@ -178,8 +154,13 @@ impl Table {
 
 #[cfg(test)]
 mod tests {
-    use super::{super::portal::Sphere, *};
-    use crate::{bsdf::Transport, math::vec3, sampling::stream::Purpose, testing};
+    use super::*;
+    use crate::{
+        bsdf::Transport,
+        math::vec3,
+        sampling::{portal::Sphere, stream::Purpose},
+        testing,
+    };
     use statrs::distribution::{ContinuousCDF, Normal};
     use std::f64::consts::PI;
 
@@ -204,11 +185,8 @@ mod tests {
         let all: Vec<&Lesson> = lessons.iter().collect();
         let tabulator = Tabulator { basis: Basis::default(), links: None };
         let known = Directions::learn(&all, &[portal], tabulator).unwrap();
-        assert!(
-            known.aimed.len() == 1 && known.aimed[0].0 > 0.3 && known.tabled.is_some(),
-            "{:?}",
-            known.aimed
-        );
+        let [(share, _)] = known.aimed.portals() else { panic!("{:?}", known.aimed) };
+        assert!(*share > 0.3 && known.tabled.is_some(), "{:?}", known.aimed);
         let most = -Normal::standard().inverse_cdf(testing::significance(12) / 2.0);
         for distance in [0.1, 0.5, 3.0] {
             let position = smallest.centre + distance * vec3(0.6, 0.48, 0.64);

@@ -12,26 +12,29 @@
 //! once, on arrival, and kept. A part of G aims at portals, each of them a few spheres around one centre; a little does
 //! so even where no walk was seen to pass through. The rest is a table of directions from a cell of places.
 
-mod crossings;
 mod directions;
 pub mod distribution;
 pub mod hierarchy;
 pub mod links;
 mod places;
-mod portal;
 mod radiance;
 pub mod solution;
 
 use crate::{
     bsdf::Transport,
     math::Vec3,
-    sampling::{Basis, Cells, Stream, cells::Keyed, quadtree::limit},
+    sampling::{
+        Basis, Cells, Stream,
+        cells::Keyed,
+        crossings::{self, Search},
+        portal::{Passage, Portal},
+        quadtree::limit,
+    },
     scene::lights::{Lights, Starts},
 };
 use directions::{Directions, ENOUGH, Tabulator};
 use links::Links;
 use places::Places;
-pub use portal::Portal;
 pub use radiance::{Look, Radiance, Seen};
 use rayon::prelude::*;
 use solution::Ending;
@@ -68,6 +71,8 @@ impl Learnt {
 const PER_CELL: f64 = 256.0;
 /// Levels of cells below the root: there are 4,096 of surfaces, and as many of media.
 const LEVELS: u32 = 12;
+/// For portals. Several lessons come from one path.
+const SEARCH: Search = Search { crossed: 32, judges: 1024, fewest: 5 };
 /// Largest part of the weight of all directions that one may have: it may be an outlier.
 const MOST: f64 = 1.0 / 1024.0;
 
@@ -88,6 +93,14 @@ pub struct Lesson {
     pub unguided: f32,
     /// To which of two independent parts of all lessons it belongs.
     pub fold: usize,
+}
+
+impl Lesson {
+    /// What it teaches of portals.
+    fn passage(&self) -> Passage {
+        let Self { position, direction, weight, unguided, fold, .. } = *self;
+        Passage { position, direction, is_parallel: false, weight, unaimed: unguided, fold }
+    }
 }
 
 /// The distributions that walks follow.
@@ -148,8 +161,8 @@ impl Guide {
             return None;
         }
         let places = Places::around(lessons.iter().map(|lesson| lesson.position));
-        let mut guide =
-            Self { places, portals: crossings::find(&lessons), second_moment: 1.0, ..Self::default() };
+        let portals = crossings::find(lessons.iter().map(Lesson::passage), places.extent(), SEARCH);
+        let mut guide = Self { places, portals, second_moment: 1.0, ..Self::default() };
         let known = || lessons.iter().enumerate().map(|(index, lesson)| (index as u32, lesson));
         let of_surfaces = known().filter_map(|(index, lesson)| {
             let key = places.facing(lesson.position, lesson.normal?);

@@ -23,6 +23,11 @@ impl Places {
         Self { centre: 0.5 * (low + high), scale }
     }
 
+    /// The greatest extent (m).
+    pub(super) fn extent(&self) -> f32 {
+        1.0 / self.scale
+    }
+
     /// By position.
     #[inline]
     pub(super) fn at(&self, position: Vec3) -> [f32; 3] {

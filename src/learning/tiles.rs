@@ -17,6 +17,11 @@ impl Tiles {
         Self { width, height, across: width.min(many), down: height.min(many) }
     }
 
+    /// How many lie side by side.
+    pub(super) fn across(&self) -> usize {
+        self.across as usize
+    }
+
     /// That of a pixel.
     pub(super) fn at(&self, pixel: u32) -> usize {
         let Self { width, height, across, down } = *self;

@@ -1,10 +1,12 @@
-//! Random streams and tabulated distributions.
+//! Random streams, tabulated distributions, and portals that rays aim at.
 
 pub mod cells;
+pub mod crossings;
 pub mod discrete;
 pub mod grid;
 mod inverse;
 mod points;
+pub mod portal;
 pub mod quadtree;
 pub mod sampler;
 pub mod stream;

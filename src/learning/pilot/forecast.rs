@@ -30,6 +30,8 @@ use std::collections::BTreeMap;
 const TILES: u32 = 16;
 /// The part of the tiles, those of the greatest errors, in which few samples decide.
 const FEW: f64 = 0.02;
+/// Contributions to a tile that count as much for its level as the tiles around.
+const AROUND: f64 = 8.0;
 /// Variances below this part of a tile's second moment are rounding errors.
 const LEAST_VARIANCE: f64 = 1e-3;
 
@@ -57,6 +59,9 @@ pub(super) struct Tile {
     /// Camera subpaths.
     pub samples: f64,
     pub mean: f64,
+    /// What its errors are measured against: its mean if many contributions make it, else rather that of the tiles
+    /// around. A rare bright path that makes the mean of its tile would seem to be a small error of it.
+    pub level: f64,
 }
 
 /// The squared relative error of a pixel sample, on average over the image; infinite where light is left out.
@@ -152,6 +157,8 @@ impl Forecast {
             }
         }
         found.retain(|(_, found)| found.square > 0.0);
+        let levels = levels(&tiles, all.across(), &squares(&tiles, &found, [per_pass, left]));
+        tiles.iter_mut().zip(levels).for_each(|(tile, level)| tile.level = level);
         let survival = Survival::default();
         let pixels = pixels.into_iter().map(|(pixel, samples)| (tile(pixel), f64::from(samples))).collect();
         Self { tiles, pixels, found, camera, light, light_unlearnt, is_learnt: false, survival }
@@ -280,7 +287,7 @@ impl Forecast {
         means
     }
 
-    /// Variances over squared means of the tiles that were seen, times their pixels; infinite if none showed light.
+    /// Variances over squared levels of the tiles that were seen, times their pixels; infinite if none showed light.
     fn relative(&self, moments: &[f64], squared_means: &[f64]) -> Vec<f64> {
         let pixels: f64 = self.seen().map(|(_, tile)| tile.pixels).sum();
         let mean = self.seen().map(|(_, tile)| tile.pixels * tile.mean).sum::<f64>() / pixels.max(1.0);
@@ -290,7 +297,7 @@ impl Forecast {
         let floor = 0.01 * mean * mean;
         let relative = |(index, tile): (usize, &Tile)| {
             let variance = (moments[index] - squared_means[index]).max(LEAST_VARIANCE * moments[index]);
-            tile.pixels * variance / (tile.mean * tile.mean + floor)
+            tile.pixels * variance / (tile.level * tile.level + floor)
         };
         self.seen().map(relative).collect()
     }
@@ -304,6 +311,40 @@ impl Forecast {
     fn seen(&self) -> impl Iterator<Item = (usize, &Tile)> {
         self.tiles.iter().enumerate().filter(|(_, tile)| tile.samples > 0.0)
     }
+}
+
+/// The squares of what contributions add to the mean of their tile, added up, of each of the `tiles`; see
+/// [`Forecast::of`].
+fn squares(tiles: &[Tile], found: &[(u32, Found)], [per_pass, left]: [f64; 2]) -> Vec<f64> {
+    let mut squares = vec![0.0; tiles.len()];
+    for (index, one) in found {
+        let tile = &tiles[*index as usize];
+        squares[*index as usize] += match one.kind {
+            StrategyKind::Lens => one.square * per_pass / tile.pixels,
+            _ => one.square / (left * tile.samples),
+        };
+    }
+    squares
+}
+
+/// The levels of `tiles`, of which so many lie `across`.
+pub(super) fn levels(tiles: &[Tile], across: usize, squares: &[f64]) -> Vec<f64> {
+    let near = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
+    let around = |index: usize| {
+        let (rows, columns) = (near(index / across, tiles.len() / across), near(index % across, across));
+        let seen =
+            rows.flat_map(|row| &tiles[row * across..][columns.clone()]).filter(|tile| tile.samples > 0.0);
+        let [light, pixels] = seen
+            .fold([0.0; 2], |[light, pixels], tile| [light + tile.pixels * tile.mean, pixels + tile.pixels]);
+        light / pixels.max(1.0)
+    };
+    let level = |(index, tile): (usize, &Tile)| {
+        // Its contributions are as many as mean^2 / squares equal ones.
+        let square = tile.mean * tile.mean;
+        let own = if square > 0.0 { square / (square + AROUND * squares[index]) } else { 0.0 };
+        own * tile.mean + (1.0 - own) * around(index)
+    };
+    tiles.iter().enumerate().map(level).collect()
 }
 
 /// Of `end` among [`WALKS_END`].

@@ -101,7 +101,7 @@ fn without_any_light_all_strategies_run_alike() {
 
 #[test]
 fn light_from_a_tube_is_worth_a_guide() {
-    assert_eq!(chosen(&with_tube(0.8), 1000).choice.effort.guide, Guiding::Always);
+    assert_eq!(chosen(&with_tube(1.2), 1000).choice.effort.guide, Guiding::Always);
 }
 
 /// What takes longer than it can gain is left out; what it takes else is a small part of the samples to come.
@@ -156,7 +156,7 @@ fn what_a_choice_leaves_out_is_no_outlier() {
         expected: 1.0,
         sample,
     };
-    let tile = Tile { pixels: 1.0, samples: 1.0, mean: 0.7 };
+    let tile = Tile { pixels: 1.0, samples: 1.0, mean: 0.7, level: 0.7 };
     let alone = |kind| StrategyKind::each(|one| if one == kind { 1.0 } else { 0.0 });
     let corner = |tile| if tile == 7 { StrategyKind::Lens } else { StrategyKind::EmitterHit };
     let found = (0..100).map(|tile| (tile, found(tile, corner(tile), alone(corner(tile))))).collect();
@@ -209,4 +209,24 @@ fn pilots_foresee_the_noise_of_other_counts() {
         let near = relative.iter().all(|one| (0.6..1.7).contains(&(one / relative[0])));
         assert!(near, "{scene}: {relative:?}");
     }
+}
+
+/// A tile that is bright by one of its contributions is measured against those around it; one that is bright by many
+/// against itself.
+#[test]
+fn one_bright_path_makes_no_level() {
+    let tile = Tile { pixels: 4.0, samples: 16.0, mean: 1.0, level: 0.0 };
+    let mut tiles = [tile; 9];
+    tiles[4].mean = 100.0;
+    let level = |contributions: f64| {
+        let mut squares = [1.0 / 16.0; 9];
+        squares[4] = 100.0 * 100.0 / contributions;
+        forecast::levels(&tiles, 3, &squares)
+    };
+    let [by_one, by_many] = [level(1.0), level(1000.0)];
+    assert!((10.0..25.0).contains(&by_one[4]) && by_many[4] > 98.0, "{by_one:?}, {by_many:?}");
+    assert!(by_one.iter().chain(&by_many).all(|level| (1.0..=100.0).contains(level)));
+    // Unlit, or unseen.
+    let dark = [Tile { mean: 0.0, ..tile }, Tile { samples: 0.0, mean: 0.0, ..tile }];
+    assert_eq!(forecast::levels(&dark, 2, &[0.0; 2]), [0.0; 2]);
 }

@@ -169,9 +169,9 @@ impl Lights {
         let towards = towards.unwrap_or_else(|| sky.sample(stream));
         let (pdf, radiance) = (chosen * sky.pdf_sr(towards), sky.radiance(towards));
         let disk = self.disk_towards(towards);
-        let origin = start_on(&disk, learnt, stream);
+        let (origin, part) = start_on(&disk, learnt, stream);
         let pdf_direction = disk.pdf_area();
-        let throughput = radiance * self.from_infinity / (pdf * pdf_direction);
+        let throughput = radiance * (part * self.from_infinity / (pdf * pdf_direction));
         let (point, ray) = (EmitterPoint::Direction(towards), endless(origin, -towards));
         start_of(index, point, ray, [pdf, pdf_direction], throughput)
     }
@@ -185,9 +185,9 @@ impl Lights {
         stream: &mut Stream,
     ) -> EmissionSample {
         let disk = Disk::of_beam(beam, self.all[index].position);
-        let (position, direction) = (start_on(&disk, learnt, stream), beam.direction());
+        let ((position, part), direction) = (start_on(&disk, learnt, stream), beam.direction());
         let pdf_direction = disk.pdf_area();
-        let throughput = beam.irradiance() / (pdf * pdf_direction);
+        let throughput = beam.irradiance() * (part / (pdf * pdf_direction));
         let point = EmitterPoint::Beam { position, direction };
         start_of(index, point, endless(position, direction), [pdf, pdf_direction], throughput)
     }
@@ -260,10 +260,14 @@ impl Lights {
     }
 }
 
-/// A point of `disk`, whose light travels one way only.
-fn start_on(disk: &Disk, learnt: Option<&Learnt>, stream: &mut Stream) -> Vec3 {
+/// A point of `disk`, whose light travels one way only, and the part of it that leaves there: 1, or 0 where light that
+/// aims at a portal passes the disk by.
+fn start_on(disk: &Disk, learnt: Option<&Learnt>, stream: &mut Stream) -> (Vec3, f32) {
+    if let Some(point) = learnt.and_then(|learnt| learnt.aim_on(disk, stream)) {
+        return (disk.at(point), if point.length_squared() <= 1.0 { 1.0 } else { 0.0 });
+    }
     let point = learnt.and_then(|learnt| learnt.sample_disk(-disk.direction(), stream));
-    disk.at(point.unwrap_or_else(|| warp::to_disk(stream.square())))
+    (disk.at(point.unwrap_or_else(|| warp::to_disk(stream.square()))), 1.0)
 }
 
 /// What leaves `point` of a shape, which has density `pdf_area`, in unit `direction`.

@@ -10,26 +10,36 @@
 //! Points on shapes and in media stay as they are, p' = p, so that nothing has to be inverted; p'(w | x) is looked up
 //! by position. From infinity, and for a beam, x is a direction, learnt as one. There, w becomes a point on the disk
 //! that faces x, looked up by direction.
+//!
+//! A part of p'(w | x) aims at portals. Light of a sky comes through a hole from all directions, and for each of them the
+//! hole lies elsewhere on the disk: a table needs thousands of starts to know it, a portal a few.
 
-use super::{EmitterPoint, Lights};
+use super::{Disk, EmitterPoint, Lights};
 use crate::{
     math::{Vec2, Vec3, warp},
     sampling::{
         Cells, Discrete, Quadtree, Stream,
         cells::Keyed,
+        crossings::{self, Search},
+        portal::{Aimed, Passage, Portal},
         quadtree::{Deposit, effective, limit},
     },
 };
+
 /// a: the part of the starts that are not learnt.
 const UNLEARNT: f32 = 0.25;
 /// Fewest starts, as [`effective`] counts them, in a cell of positions.
 const PER_CELL: f64 = 256.0;
 /// Levels of cells below the root.
 const LEVELS: u32 = 7;
-/// Fewer starts than this tell nothing.
+/// Fewer starts than this, as [`effective`] counts them, make no table. The emitters' own probabilities count as so many.
 const ENOUGH: f64 = 16.0;
-/// Largest share of one start in the weight of all: it may be an outlier.
+/// For portals, of each emitter. Most starts are of different walks, so that few of them hardly cross by chance.
+const SEARCH: Search = Search { crossed: 32, judges: 256, fewest: 2 };
+/// Largest share of one start in the weight of all: it may be an outlier. Of few starts each may have a larger one.
 const MOST: f64 = 1.0 / 256.0;
+/// The same over that of an average start.
+const MOST_OF_FEW: f64 = 4.0;
 
 /// Where and which way light leaves.
 #[derive(Clone, Copy, Debug)]
@@ -70,16 +80,20 @@ impl Densities {
 #[derive(Clone, Debug)]
 pub struct Starts {
     emitters: Discrete,
-    learnt: Vec<Option<Learnt>>,
+    /// Of each emitter.
+    learnt: Vec<Learnt>,
 }
 
-/// Those of one emitter.
+/// Those of one emitter. What is not known is as the emitter has it.
 #[derive(Clone, Debug)]
 pub(super) struct Learnt {
     /// (1 - a) P'/P.
     over_unlearnt: f32,
-    /// Of directions to where light comes from: emitters that surround the scene only.
+    /// Of directions to where light comes from, of emitters that surround the scene.
     towards: Option<Quadtree>,
+    /// The shares that aim at portals.
+    aimed: Aimed,
+    /// Tables for the rest, of all starts: portals leave out what passes beside them.
     cells: Cells<3, Option<Quadtree>>,
 }
 
@@ -87,21 +101,25 @@ impl Starts {
     /// Learns from `starts`, each with a weight, finite and at least 0; none where they tell nothing.
     pub fn learn(lights: &Lights, mut starts: Vec<(Start, f32)>) -> Option<Self> {
         // Emitters without power are never chosen: they have no density that could be mixed with another.
-        starts.retain(|(start, _)| lights.starts.probability(start.light as usize) > 0.0);
-        if limit(&mut starts, MOST, |(_, weight)| weight) < ENOUGH {
+        let has_power = |start: &Start| lights.starts.probability(start.light as usize) > 0.0;
+        starts.retain(|(start, weight)| *weight > 0.0 && has_power(start));
+        if starts.len() < 2 * SEARCH.fewest as usize {
             return None;
         }
+        let most = MOST.max(MOST_OF_FEW / starts.len() as f64);
+        let known = limit(&mut starts, most, |(_, weight)| weight);
         let mut of_emitters = vec![Vec::new(); lights.all.len()];
         for (start, weight) in starts {
             of_emitters[start.light as usize].push((start, weight));
         }
         let total = |starts: &Vec<(Start, f32)>| starts.iter().map(|(_, weight)| f64::from(*weight)).sum();
-        let emitters = Discrete::new(of_emitters.iter().map(total));
+        let totals: Vec<f64> = of_emitters.iter().map(total).collect();
+        let each = known / totals.iter().sum::<f64>();
+        let own = |index| ENOUGH * f64::from(lights.starts.probability(index));
+        let emitters = Discrete::new(totals.iter().enumerate().map(|(index, sum)| each * sum + own(index)));
         let learn = |(index, starts): (usize, Vec<(Start, f32)>)| {
-            (!starts.is_empty()).then(|| {
-                let ratio = emitters.probability(index) / lights.starts.probability(index);
-                Learnt::of(lights, index, (1.0 - UNLEARNT) * ratio, &starts)
-            })
+            let over_unlearnt = over_unlearnt(&emitters, lights, index);
+            Learnt::of(lights, index, over_unlearnt, &starts)
         };
         let learnt = of_emitters.into_iter().enumerate().map(learn).collect();
         Some(Self { emitters, learnt })
@@ -114,12 +132,10 @@ impl Starts {
             return None;
         }
         for (index, learnt) in fitting.learnt.iter_mut().enumerate() {
-            let Some(learnt) = learnt else { continue };
-            let probability = lights.starts.probability(index);
-            if probability <= 0.0 {
+            if lights.starts.probability(index) <= 0.0 && self.emitters.probability(index) > 0.0 {
                 return None;
             }
-            learnt.over_unlearnt = (1.0 - UNLEARNT) * self.emitters.probability(index) / probability;
+            learnt.over_unlearnt = over_unlearnt(&self.emitters, lights, index);
         }
         Some(fitting)
     }
@@ -139,15 +155,13 @@ impl Starts {
             return (index, probability, None);
         }
         let (index, _) = self.emitters.sample_precisely((u - unlearnt) / (1.0 - unlearnt));
-        (index, lights.starts.probability_precisely(index), self.learnt[index].as_ref())
+        (index, lights.starts.probability_precisely(index), Some(&self.learnt[index]))
     }
 
     /// Densities of `start`, given its densities `unlearnt` by the emitters alone.
     #[inline]
     pub fn densities(&self, lights: &Lights, start: &Start, unlearnt: Densities) -> Densities {
-        let Some(learnt) = &self.learnt[start.light as usize] else {
-            return Densities { point: UNLEARNT * unlearnt.point, ..unlearnt };
-        };
+        let learnt = &self.learnt[start.light as usize];
         let (is_parallel, even) = lights.measure(start);
         let ratio = learnt.over_unlearnt;
         let key = if is_parallel { -start.direction } else { start.position };
@@ -155,6 +169,11 @@ impl Starts {
             Some(table) => table.density(lights.to_square(start)) * even,
             None => unlearnt.direction,
         };
+        let by_aim = learnt.aimed.pdf(|portal| match is_parallel {
+            true => portal.pdf_across(start.position, start.direction),
+            false => portal.pdf(start.position, start.direction),
+        });
+        let by_either = by_aim + (1.0 - learnt.aimed.share()) * by_table;
         let by_learnt = match &learnt.towards {
             // P' p'(x) over P.
             Some(towards) => {
@@ -165,13 +184,20 @@ impl Starts {
         };
         let by_emitter = UNLEARNT * unlearnt.point;
         let point = by_emitter + by_learnt;
-        let direction = (by_emitter * unlearnt.direction + by_learnt * by_table) / point;
+        let both = by_emitter * unlearnt.direction + by_learnt * by_either;
+        // An emitter that no light subpath starts at may still be hit.
+        let direction = if point > 0.0 { both / point } else { unlearnt.direction };
         Densities { point, direction }
+    }
+
+    /// The portals that a part of the light of an emitter aims at.
+    pub fn portals(&self, light: usize) -> impl Iterator<Item = &Portal> {
+        self.learnt[light].aimed.portals().iter().map(|(_, portal)| portal)
     }
 
     /// Memory that they take (bytes).
     pub fn bytes(&self) -> usize {
-        let learnt: usize = self.learnt.iter().flatten().map(Learnt::bytes).sum();
+        let learnt: usize = self.learnt.iter().map(Learnt::bytes).sum();
         self.emitters.bytes() + size_of_val(&self.learnt[..]) + learnt
     }
 
@@ -184,10 +210,16 @@ impl Starts {
     }
 }
 
+/// (1 - a) P'/P of the emitter `index`; 0 without power.
+fn over_unlearnt(emitters: &Discrete, lights: &Lights, index: usize) -> f32 {
+    let ratio = emitters.probability(index) / lights.starts.probability(index);
+    if ratio.is_finite() { (1.0 - UNLEARNT) * ratio } else { 0.0 }
+}
+
 impl Learnt {
     fn bytes(&self) -> usize {
         let trees = self.cells.leaves().flatten().chain(&self.towards);
-        self.cells.bytes() + trees.map(Quadtree::bytes).sum::<usize>()
+        self.cells.bytes() + self.aimed.bytes() + trees.map(Quadtree::bytes).sum::<usize>()
     }
 
     fn of(lights: &Lights, index: usize, over_unlearnt: f32, starts: &[(Start, f32)]) -> Self {
@@ -197,21 +229,26 @@ impl Learnt {
             at: warp::from_sphere(-start.direction),
             weight: *weight,
         };
-        let towards = emitter.environment().map(|_| Quadtree::learn(starts.iter().map(of_sphere).collect()));
+        let is_known = effective(starts.iter().map(|(_, weight)| *weight)) >= ENOUGH;
+        let surrounds = emitter.environment().is_some();
+        let towards =
+            (surrounds && is_known).then(|| Quadtree::learn(starts.iter().map(of_sphere).collect()));
         let known = |(start, weight): &(Start, f32)| Known {
             key: if is_parallel { -start.direction } else { start.position },
             deposit: Deposit { at: lights.to_square(start), weight: *weight },
         };
         // The one direction of a Dirac emitter is no density.
-        let cells = if emitter.is_connectible() {
+        if !emitter.is_connectible() {
+            return Self { over_unlearnt, towards, aimed: Aimed::default(), cells: Cells::default() };
+        }
+        let cells =
             Cells::learn(starts.iter().map(known).collect(), PER_CELL, LEVELS, |known: Vec<Known>| {
                 let enough = effective(known.iter().map(Known::weight)) >= ENOUGH;
                 enough.then(|| Quadtree::learn(known.into_iter().map(|known| known.deposit).collect()))
-            })
-        } else {
-            Cells::default()
-        };
-        Self { over_unlearnt, towards, cells }
+            });
+        // Where all light leaves one point, or one way, a table is as good.
+        let aimed = if is_known && !emitter.is_hittable() { Aimed::default() } else { lights.aimed(starts) };
+        Self { over_unlearnt, towards, aimed, cells }
     }
 
     /// A direction to where light comes from; none where there is only one.
@@ -223,13 +260,30 @@ impl Learnt {
     /// For a start that is not at infinity, at `position`; none where nothing is known of such.
     #[inline]
     pub(super) fn sample_direction(&self, position: Vec3, stream: &mut Stream) -> Option<Vec3> {
+        if let Some(portal) = self.aim(stream) {
+            return Some(portal.sample(position, stream));
+        }
         Some(warp::to_sphere(self.cells.at(position.to_array())?.as_ref()?.sample(stream.square())))
     }
 
-    /// A point on the unit disk that faces `towards`; none where nothing is known of that direction.
+    /// A point of `disk`, in units of its radius, whose light aims at a portal; perhaps beyond its edge. None where
+    /// light aims at none.
+    #[inline]
+    pub(super) fn aim_on(&self, disk: &Disk, stream: &mut Stream) -> Option<Vec2> {
+        let portal = self.aim(stream)?;
+        Some(disk.unit(portal.sample_across(disk.direction(), stream)))
+    }
+
+    /// A point on the unit disk that faces `towards`, of light that aims at no portal; none where nothing is known of
+    /// that direction.
     #[inline]
     pub(super) fn sample_disk(&self, towards: Vec3, stream: &mut Stream) -> Option<Vec2> {
         Some(warp::to_disk(self.cells.at(towards.to_array())?.as_ref()?.sample(stream.square())))
+    }
+
+    #[inline]
+    fn aim(&self, stream: &mut Stream) -> Option<&Portal> {
+        if self.aimed.portals().is_empty() { None } else { self.aimed.choose(&mut stream.uniform()) }
     }
 }
 
@@ -241,6 +295,20 @@ impl Lights {
             Some(disk) => (true, disk.pdf_area()),
             None => (false, warp::SPHERE_PDF),
         }
+    }
+
+    /// The portals that `starts` of one emitter go through. The first and the second half of them are independent.
+    /// Without portals, directions and places on a disk count as equally likely.
+    fn aimed(&self, starts: &[(Start, f32)]) -> Aimed {
+        let passage = |(index, (start, weight)): (usize, &(Start, f32))| {
+            let (is_parallel, unaimed) = self.measure(start);
+            let Start { position, direction, .. } = *start;
+            let fold = usize::from(2 * index >= starts.len());
+            Passage { position, direction, is_parallel, weight: *weight, unaimed, fold }
+        };
+        let passages = || starts.iter().enumerate().map(passage);
+        let portals = crossings::find(passages(), 2.0 * self.radius, SEARCH);
+        Aimed::of(&portals, passages())
     }
 
     /// Where on the unit square `start` has its direction, or its point of the disk.

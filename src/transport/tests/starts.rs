@@ -2,18 +2,18 @@
 
 use super::scenes::*;
 use crate::{
-    math::{SpectrumExt, Vec3},
+    math::{SpectrumExt, Vec3, vec3},
     sampling::{Stream, stream::Purpose},
     scene::{
         build::Setup,
-        lights::{Densities, EmissionSample, Start, Starts},
+        lights::{Densities, EmissionSample, Light, Start, Starts},
     },
     testing,
 };
 use std::sync::Arc;
 
-/// Learnt starts that have little to do with what reaches the image: those above a plane count for a hundred times as much,
-/// and of the second emitter nothing is known.
+/// Learnt starts that have little to do with what reaches the image: those above a plane count for ten times as much,
+/// those through a hole for a hundred times, and of the second emitter nothing is known.
 pub(super) fn lessons(setup: &Setup) -> Arc<Starts> {
     let lights = &setup.scene.lights;
     let mut stream = Stream::new(9, 0, 0, Purpose::Study);
@@ -21,9 +21,36 @@ pub(super) fn lessons(setup: &Setup) -> Arc<Starts> {
         let sample = lights.sample_emission(&setup.scene.geometry, None, &mut stream)?;
         let start = sample.start();
         let above = start.direction.x + 0.3 * start.position.y + 0.1 * start.position.z > 0.2;
-        (start.light != 1).then_some((start, if above { 1.0 } else { 0.01 }))
+        let weight = if above { 1.0 } else { 0.1 };
+        (start.light != 1).then_some((start, if is_through(setup, &start) { 100.0 * weight } else { weight }))
     });
     Arc::new(Starts::learn(lights, starts.collect()).unwrap())
+}
+
+/// What a dozen starts of each emitter teach, all of which go through the hole: too few for tables.
+fn lessons_of_few(setup: &Setup) -> Arc<Starts> {
+    let lights = &setup.scene.lights;
+    let mut stream = Stream::new(10, 0, 0, Purpose::Study);
+    let mut known = vec![0; lights.all.len()];
+    let mut starts = Vec::new();
+    for _ in 0..400_000 {
+        let Some(sample) = lights.sample_emission(&setup.scene.geometry, None, &mut stream) else { continue };
+        let (start, count) = (sample.start(), &mut known[sample.light as usize]);
+        if *count < 12 && is_through(setup, &start) {
+            *count += 1;
+            starts.push((start, 1.0));
+        }
+    }
+    Arc::new(Starts::learn(lights, starts).unwrap())
+}
+
+/// True if light passes through a hole, a twelfth of the scene wide.
+fn is_through(setup: &Setup, start: &Start) -> bool {
+    let bounds = setup.scene.geometry.bounds();
+    let (centre, radius) = (0.5 * (bounds.low + bounds.high), bounds.size().max_element() / 24.0);
+    let to = centre + radius * vec3(1.0, -1.0, 0.5) - start.position;
+    let along = to.dot(start.direction);
+    along > 0.0 && (to - along * start.direction).length_squared() < radius * radius
 }
 
 /// A number below [`CELLS`] for the emitter and the octants that position and direction lie in.
@@ -45,10 +72,11 @@ fn tally(values: impl Iterator<Item = (Start, f64)>) -> Vec<(f64, f64)> {
     sums
 }
 
-/// Largest difference of two tallies of as many samples, in standard deviations; cells of few samples are left out.
+/// Largest difference of two tallies of as many samples, in standard deviations. Cells of few samples are left out: the
+/// greatest ratios of densities are rare, and with 100 samples 5 standard deviations were seen.
 fn worst(a: &[(f64, f64)], b: &[(f64, f64)]) -> f64 {
     let z = |((x, xx), (y, yy)): (&(f64, f64), &(f64, f64))| (x - y).abs() / (xx + yy).sqrt();
-    let many = |((x, xx), (y, yy)): &(&(f64, f64), &(f64, f64))| x * x > 50.0 * xx && y * y > 50.0 * yy;
+    let many = |((x, xx), (y, yy)): &(&(f64, f64), &(f64, f64))| x * x > 400.0 * xx && y * y > 400.0 * yy;
     let compared: Vec<f64> = a.iter().zip(b).filter(many).map(z).collect();
     assert!(compared.len() >= 5, "{} cells", compared.len());
     compared.into_iter().fold(0.0, f64::max)
@@ -65,38 +93,57 @@ fn starts_come_as_often_as_their_densities_say() {
         ("beam", build(&[OUTSIDE, SMOKE, GROUND, BULB, POINT, SEARCHLIGHT])),
     ];
     // 400 cells each at most, twice.
-    let most = -statrs_z(testing::significance(scenes.len() * 800) / 2.0);
+    let most = -statrs_z(testing::significance(2 * scenes.len() * 800) / 2.0);
     for (name, setup) in scenes {
-        let (lights, geometry) = (&setup.scene.lights, &setup.scene.geometry);
-        let learnt = lessons(&setup);
-        let sample = |starts: Option<&Starts>, seed: u64| -> Vec<EmissionSample> {
-            let mut stream = Stream::new(seed, 0, 0, Purpose::Study);
-            let samples = (0..400_000).filter_map(|_| lights.sample_emission(geometry, starts, &mut stream));
-            samples.filter(|sample| sample.throughput.max_element() > 0.0).collect()
-        };
-        let (by_learnt, by_emitters) = (sample(Some(&learnt), 1), sample(None, 2));
-        let ratio = |sample: &EmissionSample| {
-            let densities = learnt.densities(lights, &sample.start(), sample.unlearnt);
-            f64::from(densities.both()) / f64::from(sample.unlearnt.both())
-        };
-        let came = tally(by_learnt.iter().map(|sample| (sample.start(), 1.0)));
-        let due = tally(by_emitters.iter().map(|sample| (sample.start(), ratio(sample))));
-        let z = worst(&came, &due);
-        assert!(z < most, "{name}: {z}");
-        let emitted = |samples: &[EmissionSample]| {
-            tally(samples.iter().map(|one| (one.start(), f64::from(one.throughput.luminance()))))
-        };
-        let z = worst(&emitted(&by_learnt), &emitted(&by_emitters));
-        assert!(z < most, "{name}, emitted: {z}");
-        let bound = |sample: &EmissionSample| sample.pdf * sample.pdf_direction / sample.unlearnt.both();
-        assert!(by_learnt.iter().all(|sample| bound(sample) > 0.2499), "{name}");
-        assert!(by_learnt.iter().any(|sample| bound(sample) > 1.5), "{name}: nothing was learnt");
-        let denser = |sample: &EmissionSample| sample.pdf > 1.2 * sample.unlearnt.point;
-        assert!(by_learnt.iter().any(denser), "{name}: no point, nor direction to infinity, was learnt");
-        let sample = by_learnt[0];
-        let densities = learnt.densities(lights, &sample.start(), sample.unlearnt);
-        assert_eq!(densities, Densities { point: sample.pdf, direction: sample.pdf_direction });
+        for (amount, learnt) in [("many", lessons(&setup)), ("few", lessons_of_few(&setup))] {
+            let name = format!("{name}, {amount}");
+            let by_learnt = follow_their_densities(&name, &setup, &learnt, most);
+            let denser = |sample: &EmissionSample| sample.pdf > 1.2 * sample.unlearnt.point;
+            let is_learnt = amount == "few" || by_learnt.iter().any(denser);
+            assert!(is_learnt, "{name}: no point, nor direction to infinity, was learnt");
+            let lights = &setup.scene.lights;
+            let surrounds = |light: &Light| light.emitter.environment().is_some();
+            let is_aimed = |light: &Light| match amount {
+                "many" => surrounds(light),
+                _ => light.emitter.is_parallel(),
+            };
+            for (index, light) in lights.all.iter().enumerate().filter(|(_, light)| is_aimed(light)) {
+                let count = learnt.portals(index).count();
+                assert!(count > 0, "{name}: the hole was not found for {}", light.emitter.name);
+            }
+        }
     }
+}
+
+/// Starts that were `learnt`. They come as often as their densities say, up to `most` standard deviations, and emit as much as others.
+fn follow_their_densities(name: &str, setup: &Setup, learnt: &Starts, most: f64) -> Vec<EmissionSample> {
+    let (lights, geometry) = (&setup.scene.lights, &setup.scene.geometry);
+    let sample = |starts: Option<&Starts>, seed: u64| -> Vec<EmissionSample> {
+        let mut stream = Stream::new(seed, 0, 0, Purpose::Study);
+        let samples = (0..400_000).filter_map(|_| lights.sample_emission(geometry, starts, &mut stream));
+        samples.filter(|sample| sample.throughput.max_element() > 0.0).collect()
+    };
+    let (by_learnt, by_emitters) = (sample(Some(learnt), 1), sample(None, 2));
+    let ratio = |sample: &EmissionSample| {
+        let densities = learnt.densities(lights, &sample.start(), sample.unlearnt);
+        f64::from(densities.both()) / f64::from(sample.unlearnt.both())
+    };
+    let came = tally(by_learnt.iter().map(|sample| (sample.start(), 1.0)));
+    let due = tally(by_emitters.iter().map(|sample| (sample.start(), ratio(sample))));
+    let z = worst(&came, &due);
+    assert!(z < most, "{name}: {z}");
+    let emitted = |samples: &[EmissionSample]| {
+        tally(samples.iter().map(|one| (one.start(), f64::from(one.throughput.luminance()))))
+    };
+    let z = worst(&emitted(&by_learnt), &emitted(&by_emitters));
+    assert!(z < most, "{name}, emitted: {z}");
+    let bound = |sample: &EmissionSample| sample.pdf * sample.pdf_direction / sample.unlearnt.both();
+    assert!(by_learnt.iter().all(|sample| bound(sample) > 0.2499), "{name}");
+    assert!(by_learnt.iter().any(|sample| bound(sample) > 1.5), "{name}: nothing was learnt");
+    let sample = by_learnt[0];
+    let densities = learnt.densities(lights, &sample.start(), sample.unlearnt);
+    assert_eq!(densities, Densities { point: sample.pdf, direction: sample.pdf_direction });
+    by_learnt
 }
 
 /// z below which a standard normal number falls with probability `p`.
@@ -124,4 +171,20 @@ fn nothing_is_learnt_from_too_little() {
     let dark = lights.all.iter().position(|light| light.emitter.name == "point").unwrap();
     let start = Start { light: dark as u32, ..start };
     assert!(Starts::learn(lights, vec![(start, 1.0); 1000]).is_none());
+}
+
+/// An emitter so faint that no light subpath starts there may be hit all the same.
+#[test]
+fn a_lamp_where_no_light_subpath_starts_has_finite_densities() {
+    let faint = r#""faint": {"type": "sphere", "radius": 0.1, "emitter": {"type": "area", "sampling_weight": 1e-20}}"#;
+    let setup = build(&[FOG, INSIDE, ROOM, BULB, faint]);
+    let lights = &setup.scene.lights;
+    let start = Start { light: 0, position: Vec3::ZERO, direction: Vec3::Z };
+    let of = |light| (Start { light, ..start }, 1.0);
+    let learnt = Starts::learn(lights, vec![of(0); 100]).or(Starts::learn(lights, vec![of(1); 100])).unwrap();
+    for light in 0..2 {
+        let unlearnt = Densities { point: lights.start_probability(light as usize), direction: 0.3 };
+        let found = learnt.densities(lights, &Start { light, ..start }, unlearnt);
+        assert!(found.point >= 0.0 && found.direction > 0.0 && found.both().is_finite(), "{found:?}");
+    }
 }

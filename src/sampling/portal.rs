@@ -1,11 +1,10 @@
 //! Portals: what light must pass through to reach the image, like the openings between rooms, or a ball of glass. A
 //! table of directions would have to learn them anew in every cell of places; a portal is known from everywhere.
+//! Walks aim at them by direction, and parallel light by the place where it sets out.
 
-use super::Lesson;
-use crate::{
-    math::{Frame, Vec2, Vec3, warp},
-    sampling::Stream,
-};
+use super::Stream;
+use crate::math::{Frame, Vec2, Vec3, warp};
+use std::f32::consts::PI;
 
 /// Number of concentric spheres that directions aim at, each wider by the square root of 2. An opening may be of any
 /// shape: one sphere of about its size leaves out its corners, and the few paths that find those would weigh as much as
@@ -15,8 +14,132 @@ const SPHERES: usize = 4;
 const LEAST: f32 = 0.05;
 /// How often shares are fitted.
 const FITS: usize = 16;
+/// Least part that aims at each portal: where few rays were seen to pass through it, these few would else weigh as much as
+/// without it.
+const LEAST_AIMED: f32 = 0.05;
+/// Largest part that aims at portals.
+const MOST_AIMED: f32 = 0.5;
 /// Above this squared sine, at the surface and within, a sphere counts as all around.
 const WITHIN: f32 = 0.999;
+
+/// A ray of a path that reaches the image.
+#[derive(Clone, Copy, Debug)]
+pub struct Passage {
+    /// Where it begins; of parallel light any point of it.
+    pub position: Vec3,
+    /// Unit.
+    pub direction: Vec3,
+    /// Parallel light is sampled by its place (1/m^2), other by its direction (1/sr).
+    pub is_parallel: bool,
+    /// How much it counts, at least 0, finite.
+    pub weight: f32,
+    /// Its density without portals (1/sr or 1/m^2).
+    pub unaimed: f32,
+    /// To which of two independent parts of all it belongs.
+    pub fold: usize,
+}
+
+impl Passage {
+    /// Squared distance at which it passes `centre` (m^2); none if that is behind it.
+    #[inline]
+    pub(super) fn miss(&self, centre: Vec3) -> Option<f32> {
+        match self.is_parallel {
+            true => Some(miss_of_line(centre, self.position, self.direction)),
+            false => miss_of_ray(centre, self.position, self.direction),
+        }
+    }
+
+    /// True if it comes from outside `sphere` and passes through.
+    pub fn crosses(&self, sphere: &Sphere) -> bool {
+        let is_hit = self.miss(sphere.centre).is_some_and(|miss| miss <= sphere.radius_squared);
+        is_hit && self.begins_outside(sphere)
+    }
+
+    pub(super) fn begins_outside(&self, sphere: &Sphere) -> bool {
+        self.is_parallel || sphere.cone(self.position).is_some()
+    }
+
+    /// Its density among those that aim at `sphere` (1/sr or 1/m^2).
+    pub(super) fn density(&self, sphere: &Sphere) -> f32 {
+        match self.is_parallel {
+            true => sphere.pdf_at(miss_of_line(sphere.centre, self.position, self.direction)),
+            false => sphere.pdf(self.position, self.direction),
+        }
+    }
+}
+
+/// Portals, and the share of the rays that aims at each.
+#[derive(Clone, Debug, Default)]
+pub struct Aimed(Vec<(f32, Portal)>);
+
+impl Aimed {
+    /// Shares in proportion to the `passages` through each of `portals`, in balance with the others.
+    pub fn of(portals: &[Portal], passages: impl Iterator<Item = Passage>) -> Self {
+        let mut aimed: Vec<(f32, Portal)> = portals.iter().map(|portal| (0.0, *portal)).collect();
+        let mut total = 0.0;
+        for passage in passages {
+            total += passage.weight;
+            if let Some((sum, _)) = aimed.iter_mut().find(|(_, portal)| passage.crosses(&portal.outermost()))
+            {
+                *sum += passage.weight;
+            }
+        }
+        let share = |sum: f32| if total > 0.0 { sum / total } else { 0.0 };
+        aimed.iter_mut().for_each(|(sum, _)| *sum = share(*sum).max(LEAST_AIMED));
+        let all: f32 = aimed.iter().map(|(share, _)| share).sum();
+        aimed.iter_mut().for_each(|(share, _)| *share *= (MOST_AIMED / all).min(1.0));
+        Self(aimed)
+    }
+
+    /// The part of the rays that aims at portals.
+    #[inline]
+    pub fn share(&self) -> f32 {
+        self.0.iter().map(|(share, _)| share).sum()
+    }
+
+    /// Each with its share.
+    pub fn portals(&self) -> &[(f32, Portal)] {
+        &self.0
+    }
+
+    /// The sum of the shares times `pdf`.
+    #[inline]
+    pub fn pdf(&self, pdf: impl Fn(&Portal) -> f32) -> f32 {
+        self.0.iter().map(|(share, portal)| share * pdf(portal)).sum()
+    }
+
+    /// The portal to aim at, by a number `u` in [0, 1); none, and what is left of `u`, for the other rays.
+    #[inline]
+    pub fn choose(&self, u: &mut f32) -> Option<&Portal> {
+        for (share, portal) in &self.0 {
+            if *u < *share {
+                return Some(portal);
+            }
+            *u -= share;
+        }
+        None
+    }
+
+    /// Memory that they take (bytes).
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.0[..])
+    }
+}
+
+/// Squared distance of `centre` from the line through `position` (m^2).
+#[inline]
+fn miss_of_line(centre: Vec3, position: Vec3, direction: Vec3) -> f32 {
+    let to = centre - position;
+    (to - to.dot(direction) * direction).length_squared()
+}
+
+/// The same of the ray from `position`; none if `centre` is behind it.
+#[inline]
+fn miss_of_ray(centre: Vec3, position: Vec3, direction: Vec3) -> Option<f32> {
+    let to = centre - position;
+    let along = to.dot(direction);
+    (along > 0.0).then(|| (to - along * direction).length_squared())
+}
 
 /// Concentric spheres that walks aim at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,14 +151,14 @@ pub struct Portal {
 }
 
 impl Portal {
-    /// The portal of spheres from `smallest` on. Their shares maximise the likelihood of the `lessons` that come from
-    /// outside and pass through, each with its weight (above 0).
-    pub fn fitted<'a>(smallest: Sphere, lessons: impl Iterator<Item = (f32, &'a Lesson)>) -> Self {
+    /// The portal of spheres from `smallest` on. Their shares maximise the likelihood of the `passages` that come from
+    /// outside and pass through.
+    pub fn fitted<'a>(smallest: Sphere, passages: impl Iterator<Item = &'a Passage>) -> Self {
         let even = Self { smallest, shares: [1.0 / SPHERES as f32; SPHERES] };
         let outermost = even.outermost();
-        let through = lessons.filter(|(_, lesson)| outermost.is_crossed(lesson));
-        let known = through.map(|(weight, lesson)| (weight, even.parts(lesson.position, lesson.direction)));
-        let known: Vec<_> = known.collect();
+        let through = passages.filter(|passage| passage.crosses(&outermost));
+        let parts = |passage: &Passage| even.spheres().map(|sphere| passage.density(&sphere));
+        let known: Vec<_> = through.map(|passage| (passage.weight, parts(passage))).collect();
         let fitted = (0..FITS).fold(even, |portal, _| portal.refitted(&known));
         let rest = 1.0 - SPHERES as f32 * LEAST;
         Self { smallest, shares: fitted.shares.map(|share| LEAST + rest * share) }
@@ -55,8 +178,7 @@ impl Portal {
 
     /// The greatest of its spheres.
     pub fn outermost(&self) -> Sphere {
-        let [.., outermost] = self.spheres();
-        outermost
+        self.smallest.outermost()
     }
 
     #[inline]
@@ -82,16 +204,37 @@ impl Portal {
         parts.iter().zip(&self.shares).map(|(pdf, share)| share * pdf).sum()
     }
 
+    /// Density of the line through `position` in unit `direction` among the parallel ones that aim at it (1/m^2).
+    #[inline]
+    pub fn pdf_across(&self, position: Vec3, direction: Vec3) -> f32 {
+        let miss = miss_of_line(self.smallest.centre, position, direction);
+        let parts = self.spheres().map(|sphere| sphere.pdf_at(miss));
+        parts.iter().zip(&self.shares).map(|(pdf, share)| share * pdf).sum()
+    }
+
     /// A unit direction from `position` that aims at it.
     #[inline]
     pub fn sample(&self, position: Vec3, stream: &mut Stream) -> Vec3 {
+        self.choose(stream).sample(position, stream.square())
+    }
+
+    /// A point that a line in unit `direction` passes through if it aims at it.
+    #[inline]
+    pub fn sample_across(&self, direction: Vec3, stream: &mut Stream) -> Vec3 {
+        let Sphere { centre, radius_squared } = self.choose(stream);
+        let across = radius_squared.sqrt() * warp::to_disk(stream.square());
+        centre + Frame::around(direction).to_world(across.extend(0.0))
+    }
+
+    #[inline]
+    fn choose(&self, stream: &mut Stream) -> Sphere {
         let mut u = stream.uniform();
         let [inner @ .., outermost] = self.spheres();
         let of = inner.into_iter().zip(self.shares).find(|(_, share)| {
             u -= share;
             u < 0.0
         });
-        of.map_or(outermost, |(sphere, _)| sphere).sample(position, stream.square())
+        of.map_or(outermost, |(sphere, _)| sphere)
     }
 }
 
@@ -105,19 +248,16 @@ pub struct Sphere {
 }
 
 impl Sphere {
+    /// The greatest sphere of a portal from this one on.
+    pub(super) fn outermost(&self) -> Self {
+        Self { radius_squared: self.radius_squared * (1 << (SPHERES - 1)) as f32, ..*self }
+    }
+
     /// 1 - cos of the half angle in which `position` sees it; none from within.
     #[inline]
     fn cone(&self, position: Vec3) -> Option<f32> {
         let squared = position.distance_squared(self.centre);
         (self.radius_squared < WITHIN * squared).then(|| warp::one_minus_cos(self.radius_squared / squared))
-    }
-
-    /// Squared distance at which the ray in unit `direction` passes `centre` (m^2); none if that is behind it.
-    #[inline]
-    pub fn passes(centre: Vec3, position: Vec3, direction: Vec3) -> Option<f32> {
-        let to = centre - position;
-        let along = to.dot(direction);
-        (along > 0.0).then(|| (to - along * direction).length_squared())
     }
 
     /// True if unit `direction` from `position` may be one that aims at it.
@@ -127,14 +267,9 @@ impl Sphere {
         !is_outside || self.is_hit(position, direction)
     }
 
-    /// True if the lesson comes from outside and goes through.
-    pub fn is_crossed(&self, lesson: &Lesson) -> bool {
-        self.cone(lesson.position).is_some() && self.is_hit(lesson.position, lesson.direction)
-    }
-
     #[inline]
     fn is_hit(&self, position: Vec3, direction: Vec3) -> bool {
-        Self::passes(self.centre, position, direction).is_some_and(|miss| miss <= self.radius_squared)
+        miss_of_ray(self.centre, position, direction).is_some_and(|miss| miss <= self.radius_squared)
     }
 
     /// Density of unit `direction` among those that aim at it from `position` (1/sr).
@@ -145,6 +280,12 @@ impl Sphere {
             Some(one_minus_cos) if self.is_hit(position, direction) => warp::cone_pdf(one_minus_cos),
             Some(_) => 0.0,
         }
+    }
+
+    /// Density of a line at the squared distance `miss` from its centre (m^2) among the parallel ones through it (1/m^2).
+    #[inline]
+    fn pdf_at(&self, miss: f32) -> f32 {
+        if miss <= self.radius_squared { 1.0 / (PI * self.radius_squared) } else { 0.0 }
     }
 
     #[inline]
@@ -158,7 +299,7 @@ impl Sphere {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{bsdf::Transport, math::vec3, sampling::stream::Purpose, testing};
+    use crate::{math::vec3, sampling::stream::Purpose, testing};
     use std::f64::consts::TAU;
 
     /// Seen from afar, from close by, from its surface and from within: all directions aim at it, evenly, and the density is 1 over
@@ -193,23 +334,22 @@ mod tests {
         }
     }
 
-    /// Where all lessons go through one of the spheres, evenly, most directions aim at that one, and some at all others.
+    /// Where all passages go through one of the spheres, evenly, most directions aim at that one, and some at all others.
     #[test]
-    fn directions_aim_at_what_lessons_go_through() {
+    fn directions_aim_at_what_passages_go_through() {
         let smallest = Sphere { centre: vec3(0.3, -0.2, 0.5), radius_squared: 0.01 };
         let even = Portal::fitted(smallest, [].into_iter());
         assert!(even.shares.iter().all(|share| (share - 0.25).abs() < 1e-6), "{:?}", even.shares);
         let mut stream = Stream::new(32, 0, 0, Purpose::Study);
         for (index, sphere) in even.spheres().into_iter().enumerate() {
-            let lesson = |_| {
+            let passage = |_| {
                 let position = smallest.centre + 2.0 * warp::to_sphere(stream.square());
                 let direction = sphere.sample(position, stream.square());
-                let (normal, transport, weight) = (None, Transport::Radiance, stream.uniform());
-                Lesson { position, normal, transport, direction, weight, unguided: warp::SPHERE_PDF, fold: 0 }
+                let (weight, unaimed) = (stream.uniform(), warp::SPHERE_PDF);
+                Passage { position, direction, is_parallel: false, weight, unaimed, fold: 0 }
             };
-            let lessons: Vec<Lesson> = (0..500).map(lesson).collect();
-            let Portal { shares, .. } =
-                Portal::fitted(smallest, lessons.iter().map(|lesson| (lesson.weight, lesson)));
+            let passages: Vec<Passage> = (0..500).map(passage).collect();
+            let Portal { shares, .. } = Portal::fitted(smallest, passages.iter());
             assert!((shares.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{shares:?}");
             assert!(shares.iter().all(|share| *share >= LEAST), "{shares:?}");
             assert!(shares[index] > 0.6, "{index}: {shares:?}");
