@@ -46,7 +46,7 @@ fn what_is_learnt_is_shown_alike_by_any_threads() {
         first["seen"].as_array().unwrap().iter().map(|cell| cell["pixels"].as_f64().unwrap()).sum();
     assert!(seen > 0.0 && seen <= 1.0, "{first}");
     // One emitter has all starts, learnt or not.
-    assert_eq!(first["starts"], json!([{"emitter": 0, "unlearnt": 1.0, "learnt": 1.0}]));
+    assert_eq!(first["starts"], json!([{"emitter": 0, "unlearnt": 1.0, "learnt": 1.0, "portals": []}]));
     for (guide, learns) in [("always", true), ("never", false)] {
         let run = sandbox.run(&format!("info scene.json --guide {guide} --json")).ends(0);
         let bytes = serde_json::from_str::<Value>(&run.out()).unwrap()["learnt_bytes"].as_u64().unwrap();
