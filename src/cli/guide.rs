@@ -84,10 +84,9 @@ fn described(report: &Report) -> String {
     let portal = |portal: &Portal| format!("portal     {}", place(portal));
     let aimed = starts.iter().flat_map(|start| {
         let light = start.emitter;
-        start
-            .portals
-            .iter()
-            .map(move |portal| format!("starts     of emitter {light} at a portal {}", place(portal)))
+        start.portals.iter().map(move |portal| {
+            format!("starts     light of emitter {light} aims at a portal {}", place(portal))
+        })
     });
     let lines = match surfaces.cells + media.cells {
         0 => vec![format!("learnt in {seconds:.1} s: nothing that walks could follow")],

@@ -180,6 +180,7 @@ fn a_lamp_where_no_light_subpath_starts_has_finite_densities() {
     let setup = build(&[FOG, INSIDE, ROOM, BULB, faint]);
     let lights = &setup.scene.lights;
     let start = Start { light: 0, position: Vec3::ZERO, direction: Vec3::Z };
+    assert!((0..2).any(|light| lights.start_probability(light) == 0.0));
     let of = |light| (Start { light, ..start }, 1.0);
     let learnt = Starts::learn(lights, vec![of(0); 100]).or(Starts::learn(lights, vec![of(1); 100])).unwrap();
     for light in 0..2 {
