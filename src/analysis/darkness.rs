@@ -7,8 +7,11 @@ use crate::{
     film::Film,
     math::{Bounds, Spectrum, SpectrumExt, Vec3},
     sampling::{Stream, stream::Purpose},
-    scene::{Scene, build::Setup, lights::Light},
-    settings::options::Sky,
+    scene::{
+        Scene,
+        build::Setup,
+        lights::{Aim, Light},
+    },
     shape::{Ray, SurfacePoint},
     transport::{Options, Segment, Strategies, profiles::Everything},
 };
@@ -170,7 +173,7 @@ impl Look<'_> {
     ) -> Option<Found> {
         let scene = &self.setup.scene;
         let Some(sample) =
-            scene.lights.sample_emitter(&scene.geometry, point.position, Sky::default(), stream)
+            scene.lights.sample_emitter(&scene.geometry, point.position, Aim::default(), stream)
         else {
             return self.are_all_lamps().then_some((Cause::Away, 0.0, 0.0));
         };

@@ -58,7 +58,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         return Err(Error::new("--integrator", "an integrator that is no preview", algorithm.name(), remedy));
     }
     let starts = arguments.estimator.starts.unwrap_or(true);
-    settings.options.effort.learnt_starts = starts && settings.options.strategies.need_light_walks();
+    settings.options.effort.learnt_starts = starts && settings.options.strategies.use_starts(&setup.scene);
     let folder = outputs::folder(arguments.output.as_ref(), &arguments.scene, "guide")?;
     outputs::check_short(&FILES.map(|name| folder.join(name)))?;
     let findings = scene::threads(arguments.threads)?

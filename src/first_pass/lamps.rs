@@ -5,8 +5,10 @@ use crate::{
     emitter::Kind,
     guide::distribution::Distribution,
     sampling::{Stream, stream::Purpose},
-    scene::{Scene, lights::Light},
-    settings::options::Sky,
+    scene::{
+        Scene,
+        lights::{Aim, Light},
+    },
 };
 use rayon::prelude::*;
 
@@ -40,7 +42,7 @@ pub(super) fn light(scene: &Scene, elements: &Elements) -> Vec<Distribution> {
 /// Adds what one of `of` samples finds.
 fn receive(scene: &Scene, point: &Point, all: &mut Distribution, of: f32, stream: &mut Stream) {
     let position = point.interaction.position();
-    let found = scene.lights.sample_emitter(&scene.geometry, position, Sky::NextEvent, stream);
+    let found = scene.lights.sample_emitter(&scene.geometry, position, Aim::default(), stream);
     let Some(sample) = found.filter(|sample| is_lamp(&scene.lights.all[sample.light as usize])) else {
         return;
     };

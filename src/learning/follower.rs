@@ -72,6 +72,11 @@ impl<'a> Follower<'a> {
 
     pub(super) fn arrive(&mut self, event: &Event<'_>) {
         self.last = event.position();
+        if let (1, Some(current)) = (event.arrival.edges, &mut self.current)
+            && self.lights.environment == Some(current.start.light)
+        {
+            current.start.position = self.last;
+        }
     }
 
     pub(super) fn keep(&mut self, place: usize) {
@@ -96,6 +101,11 @@ impl<'a> Follower<'a> {
             Meeting::Bent { sample, last, .. } => self.joined(sample, *last),
             Meeting::Pivot(_, event, sample) => self.joined(sample, event.position()),
         }
+    }
+
+    /// See [`Lights::unaimed`].
+    pub(super) fn unaimed(&self, start: &Start) -> f32 {
+        self.lights.unaimed(self.starts, start)
     }
 
     /// See [`Lights::without_sky`], from the last vertex.

@@ -7,7 +7,10 @@ use crate::{
     math::{Channels, Spectrum, Vec3},
     passes::{Settings, compiled::Compiled, pass::Outcome},
     sampling::{Stream, stream::Purpose},
-    scene::{Scene, lights::EmitterSample},
+    scene::{
+        Scene,
+        lights::{Aim, EmitterSample},
+    },
     settings::{integrator::FogSettings, options::Sky},
     shape::{Ray, SurfacePoint},
     transport::{NullCrossing, Segment, profiles::Everything},
@@ -170,7 +173,7 @@ impl<'a> Preview<'a> {
             let sky = self
                 .scene
                 .lights
-                .infinity_hit(direction, segment.ray().origin, Sky::default())
+                .infinity_hit(direction, segment.ray().origin, Aim::default())
                 .filter(|_| !segment.is_hidden());
             return Some(End::Radiance(sky.map_or(Spectrum::ZERO, |sample| sample.value)));
         };
@@ -217,7 +220,7 @@ impl<'a> Preview<'a> {
         let reference = point.position;
         if lights.all.len() > LIGHTS_PER_POINT {
             let mut draw = |_| {
-                let sample = lights.sample_emitter(geometry, reference, Sky::default(), stream)?;
+                let sample = lights.sample_emitter(geometry, reference, Aim::default(), stream)?;
                 even_radiance(&lights.all[sample.light as usize].emitter).is_none().then_some(sample)
             };
             let samples = (0..LIGHTS_PER_POINT).filter_map(&mut draw);
@@ -226,8 +229,9 @@ impl<'a> Preview<'a> {
         }
         let is_sampled = |emitter: &Emitter| emitter.is_connectible() && even_radiance(emitter).is_none();
         let others = lights.all.iter().enumerate().filter(|(_, light)| is_sampled(&light.emitter));
-        let samples =
-            others.filter_map(|(index, _)| lights.sample_point_of(geometry, index, 1.0, reference, stream));
+        let samples = others.filter_map(|(index, _)| {
+            lights.sample_point_of(geometry, (index, 1.0), reference, Aim::default(), stream)
+        });
         samples.map(|sample| self.reflected(point, incoming, &sample)).sum()
     }
 

@@ -17,10 +17,12 @@ const FITS: usize = 16;
 /// Least part that aims at each portal: where few rays were seen to pass through it, these few would else weigh as much as
 /// without it.
 const LEAST_AIMED: f32 = 0.05;
-/// Largest part that aims at portals.
-const MOST_AIMED: f32 = 0.5;
-/// Above this squared sine, at the surface and within, a sphere counts as all around.
+/// Largest part of walks that aims at portals.
+pub const MOST_AIMED: f32 = 0.5;
+/// Above this squared sine, at the surface and within, a sphere counts as all around. So it does below the other, from
+/// where f32 does not tell its directions from others.
 const WITHIN: f32 = 0.999;
+const RESOLVED: f32 = 1e-8;
 
 /// A ray of a path that reaches the image.
 #[derive(Clone, Copy, Debug)]
@@ -73,8 +75,9 @@ impl Passage {
 pub struct Aimed(Vec<(f32, Portal)>);
 
 impl Aimed {
-    /// Shares in proportion to the `passages` through each of `portals`, in balance with the others.
-    pub fn of(portals: &[Portal], passages: impl Iterator<Item = Passage>) -> Self {
+    /// Shares in proportion to the `passages` through each of `portals`, in balance with the others; together at `most`
+    /// this part.
+    pub fn of(portals: &[Portal], passages: impl Iterator<Item = Passage>, most: f32) -> Self {
         let mut aimed: Vec<(f32, Portal)> = portals.iter().map(|portal| (0.0, *portal)).collect();
         let mut total = 0.0;
         for passage in passages {
@@ -85,10 +88,56 @@ impl Aimed {
             }
         }
         let share = |sum: f32| if total > 0.0 { sum / total } else { 0.0 };
-        aimed.iter_mut().for_each(|(sum, _)| *sum = share(*sum).max(LEAST_AIMED));
-        let all: f32 = aimed.iter().map(|(share, _)| share).sum();
-        aimed.iter_mut().for_each(|(share, _)| *share *= (MOST_AIMED / all).min(1.0));
-        Self(aimed)
+        aimed.iter_mut().for_each(|(sum, _)| *sum = share(*sum));
+        Self(aimed).within(most)
+    }
+
+    /// Shares of `portals`, and of the spheres of each, that maximise the likelihood of `passages` from places; together
+    /// at `most` this part. The other rays come as often as the passages say.
+    pub fn fitted(portals: &[Portal], passages: impl Iterator<Item = Passage>, most: f32) -> Self {
+        let known = |passage: Passage| {
+            let parts = portals.iter().map(|portal| portal.parts(passage.position, passage.direction));
+            (passage, parts.collect())
+        };
+        let known: Vec<(Passage, Vec<[f32; SPHERES]>)> = passages.map(known).collect();
+        let share = 1.0 / (portals.len() + 1) as f32;
+        let even = Self(portals.iter().map(|portal| (share, Portal::even(portal.smallest))).collect());
+        let fitted = (0..FITS).fold(even, |aimed, _| aimed.refitted(&known));
+        let ample = |(share, portal): &(f32, Portal)| (*share, portal.ample());
+        Self(fitted.0.iter().map(ample).collect()).within(most)
+    }
+
+    /// One step of expectation maximisation.
+    fn refitted(&self, known: &[(Passage, Vec<[f32; SPHERES]>)]) -> Self {
+        let mut sums = vec![[f32::MIN_POSITIVE; SPHERES]; self.0.len()];
+        let mut total = ((self.0.len() + 1) * SPHERES) as f32 * f32::MIN_POSITIVE;
+        for (passage, parts) in known {
+            let by_portals =
+                self.0.iter().zip(parts).map(|((share, portal), parts)| share * portal.of(parts));
+            let all = (1.0 - self.share()) * passage.unaimed + by_portals.sum::<f32>();
+            if all <= 0.0 {
+                continue;
+            }
+            total += passage.weight;
+            for (((share, portal), parts), sums) in self.0.iter().zip(parts).zip(&mut sums) {
+                for ((sum, part), of_sphere) in sums.iter_mut().zip(parts).zip(&portal.shares) {
+                    *sum += passage.weight * share * of_sphere * part / all;
+                }
+            }
+        }
+        let refitted = |((_, portal), sums): (&(f32, Portal), [f32; SPHERES])| {
+            let all: f32 = sums.iter().sum();
+            (all / total, Portal { shares: sums.map(|sum| sum / all), ..*portal })
+        };
+        Self(self.0.iter().zip(sums).map(refitted).collect())
+    }
+
+    /// The same with at least a small share of each portal, and at `most` this part of all.
+    fn within(mut self, most: f32) -> Self {
+        self.0.iter_mut().for_each(|(share, _)| *share = share.max(LEAST_AIMED));
+        let all = self.share();
+        self.0.iter_mut().for_each(|(share, _)| *share *= (most / all).min(1.0));
+        self
     }
 
     /// The part of the rays that aims at portals.
@@ -154,14 +203,22 @@ impl Portal {
     /// The portal of spheres from `smallest` on. Their shares maximise the likelihood of the `passages` that come from
     /// outside and pass through.
     pub fn fitted<'a>(smallest: Sphere, passages: impl Iterator<Item = &'a Passage>) -> Self {
-        let even = Self { smallest, shares: [1.0 / SPHERES as f32; SPHERES] };
+        let even = Self::even(smallest);
         let outermost = even.outermost();
         let through = passages.filter(|passage| passage.crosses(&outermost));
         let parts = |passage: &Passage| even.spheres().map(|sphere| passage.density(&sphere));
         let known: Vec<_> = through.map(|passage| (passage.weight, parts(passage))).collect();
-        let fitted = (0..FITS).fold(even, |portal, _| portal.refitted(&known));
+        (0..FITS).fold(even, |portal, _| portal.refitted(&known)).ample()
+    }
+
+    fn even(smallest: Sphere) -> Self {
+        Self { smallest, shares: [1.0 / SPHERES as f32; SPHERES] }
+    }
+
+    /// The same with at least a small share of each sphere.
+    fn ample(&self) -> Self {
         let rest = 1.0 - SPHERES as f32 * LEAST;
-        Self { smallest, shares: fitted.shares.map(|share| LEAST + rest * share) }
+        Self { shares: self.shares.map(|share| LEAST + rest * share), ..*self }
     }
 
     /// One step of expectation maximisation.
@@ -191,7 +248,8 @@ impl Portal {
     #[inline]
     fn parts(&self, position: Vec3, direction: Vec3) -> [f32; SPHERES] {
         let spheres = self.spheres();
-        if !spheres[SPHERES - 1].is_aimed(position, direction) {
+        // Where the smallest counts as all around, it has all directions.
+        if self.smallest.cone(position).is_some() && !spheres[SPHERES - 1].is_aimed(position, direction) {
             return [0.0; SPHERES];
         }
         spheres.map(|sphere| sphere.pdf(position, direction))
@@ -200,7 +258,12 @@ impl Portal {
     /// Density of unit `direction` among those that aim at it from `position` (1/sr).
     #[inline]
     pub fn pdf(&self, position: Vec3, direction: Vec3) -> f32 {
-        let parts = self.parts(position, direction);
+        self.of(&self.parts(position, direction))
+    }
+
+    /// The density that densities by sphere make.
+    #[inline]
+    fn of(&self, parts: &[f32; SPHERES]) -> f32 {
         parts.iter().zip(&self.shares).map(|(pdf, share)| share * pdf).sum()
     }
 
@@ -208,8 +271,7 @@ impl Portal {
     #[inline]
     pub fn pdf_across(&self, position: Vec3, direction: Vec3) -> f32 {
         let miss = miss_of_line(self.smallest.centre, position, direction);
-        let parts = self.spheres().map(|sphere| sphere.pdf_at(miss));
-        parts.iter().zip(&self.shares).map(|(pdf, share)| share * pdf).sum()
+        self.of(&self.spheres().map(|sphere| sphere.pdf_at(miss)))
     }
 
     /// A unit direction from `position` that aims at it.
@@ -253,18 +315,17 @@ impl Sphere {
         Self { radius_squared: self.radius_squared * (1 << (SPHERES - 1)) as f32, ..*self }
     }
 
-    /// 1 - cos of the half angle in which `position` sees it; none from within.
+    /// 1 - cos of the half angle in which `position` sees it; none from within and from too far away.
     #[inline]
     fn cone(&self, position: Vec3) -> Option<f32> {
-        let squared = position.distance_squared(self.centre);
-        (self.radius_squared < WITHIN * squared).then(|| warp::one_minus_cos(self.radius_squared / squared))
+        let sine_squared = self.radius_squared / position.distance_squared(self.centre);
+        (RESOLVED..WITHIN).contains(&sine_squared).then(|| warp::one_minus_cos(sine_squared))
     }
 
     /// True if unit `direction` from `position` may be one that aims at it.
     #[inline]
     fn is_aimed(&self, position: Vec3, direction: Vec3) -> bool {
-        let is_outside = self.radius_squared < WITHIN * position.distance_squared(self.centre);
-        !is_outside || self.is_hit(position, direction)
+        self.cone(position).is_none() || self.is_hit(position, direction)
     }
 
     #[inline]
@@ -331,6 +392,38 @@ mod tests {
             }
             let p = testing::chi_square(&counts, &[1000.0; 16]);
             assert!(p > testing::significance(7), "{distance}: {p}, {counts:?}");
+        }
+    }
+
+    /// Of rays from near and from far, some aim at one of a portal's spheres, some at another portal, and the
+    /// others anywhere. So many are found.
+    #[test]
+    fn shares_are_found_from_near_and_far() {
+        let sphere = |x| Sphere { centre: vec3(x, -0.2, 0.5), radius_squared: 0.01 };
+        let portals = [sphere(0.3), sphere(-3.0)].map(Portal::even);
+        let targets =
+            [(0.5, Some(portals[0].spheres()[2])), (0.2, Some(portals[1].spheres()[0])), (0.3, None)];
+        let mut stream = Stream::new(33, 0, 0, Purpose::Study);
+        for distance in [0.3, 1.0, 20.0] {
+            let mut passage = |target: Option<Sphere>| {
+                let position = portals[0].smallest.centre + distance * warp::to_sphere(stream.square());
+                let u = stream.square();
+                let direction =
+                    target.map_or_else(|| warp::to_sphere(u), |sphere| sphere.sample(position, u));
+                let unaimed = warp::SPHERE_PDF;
+                Passage { position, direction, is_parallel: false, weight: 1.0, unaimed, fold: 0 }
+            };
+            let some = |(share, target): &(f64, Option<Sphere>)| vec![*target; (share * 10_000.0) as usize];
+            let passages: Vec<Passage> = targets.iter().flat_map(some).map(&mut passage).collect();
+            let found = Aimed::fitted(&portals, passages.into_iter(), 0.9);
+            let shares: Vec<f32> = found.0.iter().map(|(share, _)| *share).collect();
+            assert!(
+                (shares[0] - 0.5).abs() < 0.05 && (shares[1] - 0.2).abs() < 0.05,
+                "{distance}: {shares:?}"
+            );
+            assert!(found.0[0].1.shares[2] > 0.6 && found.0[1].1.shares[0] > 0.6, "{distance}: {found:?}");
+            let bounded = Aimed::fitted(&portals, [].into_iter(), 0.9).share();
+            assert!((0.1..0.91).contains(&bounded), "{bounded}");
         }
     }
 

@@ -155,8 +155,8 @@ impl<P: Profile, R: Observer> Visitor<P> for CameraPath<'_, P, R> {
 
     fn escape(&mut self, subpath: &Subpath<P::MisSums>) {
         self.observer.escape(&subpath.arrival());
-        let (lights, previous, sky) = (&self.estimator.scene.lights, self.previous, self.estimator.sky);
-        self.emission(subpath, || lights.infinity_hit(-subpath.incoming, previous, sky));
+        let (lights, previous, aim) = (&self.estimator.scene.lights, self.previous, self.estimator.aim());
+        self.emission(subpath, || lights.infinity_hit(-subpath.incoming, previous, aim));
     }
 }
 
@@ -345,7 +345,8 @@ impl<'a, P: Profile, R: Observer> CameraPath<'a, P, R> {
         let Scene { lights, geometry, .. } = self.estimator.scene;
         let t = vertex.subpath.edges + 1;
         self.observer.start();
-        if let Some(sample) = lights.sample_emitter(geometry, vertex.position(), self.estimator.sky, stream) {
+        if let Some(sample) = lights.sample_emitter(geometry, vertex.position(), self.estimator.aim(), stream)
+        {
             let contribution = self.join_emitter(vertex, &sample, stream);
             self.observer.contribute(1, t, Meeting::Emitter(&sample), contribution.as_ref());
         }

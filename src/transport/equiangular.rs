@@ -57,7 +57,7 @@ use crate::{
     sampling::Stream,
     scene::{
         Scene,
-        lights::{EmissionSample, EmitterSample},
+        lights::{Aim, EmissionSample, EmitterSample},
     },
     sensor::Projection,
     shape::Ray,
@@ -126,7 +126,7 @@ impl<P: Profile> Estimator<'_, P> {
         let Projection { ray, distance_squared, pdf, .. } = *seen;
         let lights = &self.scene.lights;
         let pivoted = self.pivoted(start.light, position, ray.direction, distance_squared.sqrt());
-        let connect = lights.connect_over_start(&self.scene.geometry, start, position, self.sky);
+        let connect = lights.connect_over_start(&self.scene.geometry, start, position, self.aim());
         let density = pivoted * connect * pdf / distance_squared * end.inv_pdf;
         P::MisSums::of(StrategyKind::Equiangular, P::Channels::splat(density))
     }
@@ -164,8 +164,13 @@ impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
         let between = segment::transmittance::<P>(scene, span, 0.0, medium, hidden, stream)?;
         let vertex =
             self.along(departure, &between, ray.origin + ray.direction * beyond_clip, distance, pdf)?;
-        let sample =
-            scene.lights.sample_point_of(&scene.geometry, index, chosen, vertex.position(), stream)?;
+        let sample = scene.lights.sample_point_of(
+            &scene.geometry,
+            (index, chosen),
+            vertex.position(),
+            Aim::default(),
+            stream,
+        )?;
         Some((vertex, sample))
     }
 

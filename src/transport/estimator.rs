@@ -14,7 +14,7 @@ use crate::{
     math::Vec3,
     scene::{
         Scene,
-        lights::{Densities, EmitterSample, Start, Starts},
+        lights::{Aim, Densities, EmitterSample, Start, Starts},
     },
     settings::{
         heuristic::Heuristic,
@@ -87,6 +87,12 @@ impl<P: Profile> Estimator<'_, P> {
             StrategyKind::Equiangular => self.counts.equiangular,
         };
         Strategy { kind, count, heuristic: self.heuristic }
+    }
+
+    /// How next-event estimation aims at emitters.
+    #[inline]
+    pub(super) fn aim(&self) -> Aim<'_> {
+        Aim { sky: self.sky, starts: self.starts.as_deref() }
     }
 
     /// Density with which a light subpath starts at `sample` towards `other`, in unit `direction`.

@@ -120,7 +120,7 @@ impl<P: Profile, R: Observer> Visitor<P> for LightPath<'_, P, R> {
         }
         let scene = self.estimator.scene;
         let ratio =
-            scene.lights.connect_over_start(&scene.geometry, &self.start, position, self.estimator.sky);
+            scene.lights.connect_over_start(&scene.geometry, &self.start, position, self.estimator.aim());
         self.estimator.counts.next_event * ratio
     }
 

@@ -1,6 +1,6 @@
 //! The kinds of strategies, and sets of them.
 
-use crate::settings::options::Strategies;
+use crate::{scene::Scene, settings::options::Strategies};
 
 /// The kinds of strategies, as [`Strategies`] switches them on and off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -81,6 +81,11 @@ impl Strategies {
     /// True if any strategy that runs needs light subpaths.
     pub fn need_light_walks(self) -> bool {
         self.connection || self.lens
+    }
+
+    /// True if learnt starts make a difference: to light subpaths, or to next-event estimation of a sky, by their portals.
+    pub fn use_starts(self, scene: &Scene) -> bool {
+        self.need_light_walks() || self.next_event && scene.lights.environment.is_some()
     }
 
     /// The same without strategies of `kind`.

@@ -117,7 +117,8 @@ impl Estimator {
         let hide_emitters = (self.hide_emitters || scene.hide_emitters) && !self.no_hide_emitters;
         let guide = self.guiding(scene, algorithm, heuristic)?;
         let sky = self.sky(setup, strategies).unwrap_or(scene.effort.sky);
-        let effort = Effort { guide, learnt_starts: self.learnt_starts(strategies), sky, ..scene.effort };
+        let effort =
+            Effort { guide, learnt_starts: self.learnt_starts(setup, strategies), sky, ..scene.effort };
         let options = Options {
             algorithm,
             strategies,
@@ -157,11 +158,14 @@ impl Estimator {
         self.sky.filter(|_| applies)
     }
 
-    fn learnt_starts(&self, strategies: Strategies) -> bool {
-        if self.starts.is_some() && !strategies.need_light_walks() {
-            complain("warning: --starts has no effect: no strategy in use traces light subpaths");
+    fn learnt_starts(&self, setup: &Setup, strategies: Strategies) -> bool {
+        let applies = strategies.use_starts(&setup.scene);
+        if self.starts.is_some() && !applies {
+            complain(
+                "warning: --starts has no effect: no strategy in use traces light subpaths, or connects to a sky",
+            );
         }
-        self.starts == Some(true) && strategies.need_light_walks()
+        self.starts == Some(true) && applies
     }
 
     fn first_pass(&self, scene: Options, algorithm: Algorithm) -> FirstPass {

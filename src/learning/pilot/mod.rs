@@ -135,7 +135,7 @@ pub fn choose(scene: &Scene, film: &Film, settings: &Settings, decided: Decided)
         said => said == Guiding::Auto,
     };
     let guide = if asks { Guiding::Never } else { settings.options.effort.guide };
-    let learnt_starts = decided.starts == Some(true) && all.need_light_walks();
+    let learnt_starts = decided.starts == Some(true) && all.use_starts(scene);
     let sky = decided.sky.unwrap_or_default();
     let effort = Effort { learnt_starts, guide, sky, ..Effort::default() };
     let base = Choice { among: all, strategies: all, effort, gain: 1.0 };
@@ -334,7 +334,7 @@ impl Pilots<'_> {
             (walks || *light_walks == 1.0) && (strategies.connection || *connections == 1)
         };
         let starts: &[bool] = match self.decided.starts {
-            _ if !walks => &[false],
+            _ if !strategies.use_starts(self.scene) => &[false],
             Some(true) => &[true],
             None if knows_starts => &[false, true],
             _ => &[false],

@@ -7,6 +7,7 @@ use crate::{settings::options::Survival, transport::strategy::StrategyKind};
 pub(super) struct Weighed {
     pub tile: u32,
     pub unlearnt: f32,
+    pub unaimed: f32,
     pub without_sky: f32,
     pub moment: f64,
     pub shares: [f32; StrategyKind::ALL.len()],
@@ -31,6 +32,7 @@ impl Weighed {
         Self {
             tile,
             unlearnt: found.unlearnt,
+            unaimed: found.unaimed,
             without_sky: found.without_sky,
             moment: found.square / f64::from(passed),
             shares,
@@ -44,7 +46,7 @@ impl Weighed {
 /// How often strategies run, by kind.
 pub(super) struct Counts {
     pub each: [f32; StrategyKind::ALL.len()],
-    /// Light subpaths begin at learnt starts.
+    /// Light subpaths begin at learnt starts, and next-event estimation aims at their portals.
     pub learnt: bool,
     /// Next-event estimation connects to the environment too.
     pub with_sky: bool,
@@ -63,10 +65,17 @@ impl Counts {
     pub(super) fn of(&self, kind: StrategyKind, one: &Weighed) -> f32 {
         let count = self.each[kind as usize];
         match kind {
-            StrategyKind::NextEvent if !self.with_sky => count * one.without_sky,
+            StrategyKind::NextEvent => count * self.joined(one),
             StrategyKind::Connection | StrategyKind::Lens if !self.learnt => count * one.unlearnt,
             _ => count,
         }
+    }
+
+    /// How often next-event estimation finds a contribution, over how often it did in the pilot.
+    #[inline(always)]
+    fn joined(&self, one: &Weighed) -> f32 {
+        let aimed = if self.learnt { 1.0 } else { one.unaimed };
+        if self.with_sky { aimed } else { aimed * one.without_sky }
     }
 
     /// Written out for speed: all choices go through all contributions.
@@ -74,9 +83,8 @@ impl Counts {
     pub(super) fn density(&self, one: &Weighed) -> Density {
         let [hits, next_event, connections, lens, equiangular] = self.each;
         let begun = if self.learnt { 1.0 } else { one.unlearnt };
-        let joined = if self.with_sky { next_event } else { next_event * one.without_sky };
         let hit = one.shares[0] * hits;
-        let camera = hit + one.shares[1] * joined + one.shares[4] * equiangular;
+        let camera = hit + one.shares[1] * next_event * self.joined(one) + one.shares[4] * equiangular;
         let light = one.shares[2] * connections + one.shares[3] * lens;
         Density { all: camera + begun * light, hit }
     }

@@ -30,6 +30,8 @@ pub(super) struct Found {
     pub ends: Ends,
     /// How often light subpaths would start there without learnt starts, over how often they do.
     pub unlearnt: f32,
+    /// How often next-event estimation would find its light without learnt starts, over how often it does.
+    pub unaimed: f32,
     /// Probability that next-event estimation finds its light if it leaves out the environment, over that with it.
     pub without_sky: f32,
     /// The kind of the strategy that brought it.
@@ -260,8 +262,8 @@ impl Observer for Recorder<'_> {
         let Some(found) = contribution.filter(|c| c.value.is_finite()) else { return };
         let Contribution { value, shares, transmittance, .. } = found;
         let expected = found.expected.luminance() / transmittance.luminance();
-        let (unlearnt, without_sky) = self.follower.start(s, t, &meeting).map_or((1.0, 1.0), |followed| {
-            (followed.unlearnt, self.follower.without_sky(followed.start.light))
+        let [unlearnt, unaimed, without_sky] = self.follower.start(s, t, &meeting).map_or([1.0; 3], |one| {
+            [one.unlearnt, self.follower.unaimed(&one.start), self.follower.without_sky(one.start.light)]
         });
         let (ends, kind, sample) = (self.ends(s, t, &meeting), meeting.kind(s, t), self.sums.len() as u32);
         let found = &mut self.recorded.found;
@@ -274,6 +276,7 @@ impl Observer for Recorder<'_> {
                 shares: *shares,
                 ends,
                 unlearnt,
+                unaimed,
                 without_sky,
                 kind,
                 expected,

@@ -151,6 +151,7 @@ fn what_a_choice_leaves_out_is_no_outlier() {
         shares,
         ends: Ends::default(),
         unlearnt: 1.0,
+        unaimed: 1.0,
         without_sky: 1.0,
         kind,
         expected: 1.0,
@@ -179,15 +180,17 @@ fn what_a_choice_leaves_out_is_no_outlier() {
     assert_eq!(part, f64::INFINITY);
 }
 
-/// From the samples of all strategies, the noise of others is known before they run, and of walks that end sooner.
+/// From the samples of all strategies, the noise of others is known before they run: of walks that end sooner, and of
+/// next-event estimation that aims at no portals.
 #[test]
 fn pilots_foresee_the_noise_of_other_counts() {
-    for scene in ["lampbox_down.xml", "efficiency/glass_fog_sky.xml"] {
+    for scene in ["lampbox_down.xml", "efficiency/glass_fog_sky.xml", "efficiency/skylight.xml"] {
         let (setup, settings) = small(scene, Strategies::BDPT);
         let forecast = flown(&setup, &settings, true);
         let (among, effort) = (Strategies::BDPT, Effort::default());
         let all = Choice { among, strategies: among, effort, gain: 1.0 };
         let four = Effort { connections: 4, ..all.effort };
+        let learnt = Effort { learnt_starts: true, ..all.effort };
         let longer = Effort { survival: Survival::FourthRoot, ..all.effort };
         let choices = [
             all,
@@ -196,6 +199,7 @@ fn pilots_foresee_the_noise_of_other_counts() {
             Choice { effort: longer, ..all },
             Choice { strategies: Strategies::PT, effort: longer, ..all },
             Choice { effort: Effort { connections: 4, ..longer }, ..all },
+            Choice { strategies: Strategies::PT, effort: learnt, ..all },
         ];
         let relative: Vec<f64> = choices
             .iter()

@@ -1,7 +1,7 @@
 //! Where light subpaths start.
 
 use super::{
-    Disk, EmitterPoint, Geometry, Lights, Start, Starts,
+    Aim, Disk, EmitterPoint, Geometry, Lights, Start, Starts,
     starts::{Densities, Learnt},
 };
 use crate::{
@@ -11,7 +11,6 @@ use crate::{
     },
     math::{Spectrum, Vec3, warp},
     sampling::Stream,
-    settings::options::Sky,
     shape::{Ray, SurfacePoint},
 };
 
@@ -241,9 +240,9 @@ impl Lights {
         geometry: &Geometry,
         start: &EmissionSample,
         reference: Vec3,
-        sky: Sky,
+        aim: Aim<'_>,
     ) -> f32 {
-        let (index, connections) = (start.light as usize, self.connections(sky));
+        let (index, connections) = (start.light as usize, self.connections(aim.sky));
         let chosen = || connections.probability(index, reference);
         match (&start.point, &self.all[index].emitter.kind) {
             (EmitterPoint::Surface(point), _) => {
@@ -253,7 +252,8 @@ impl Lights {
                 connections.pdf_vol(index, &volume.emission, *position, reference) / start.pdf
             }
             (EmitterPoint::Direction(towards), Kind::Infinite(infinite)) => {
-                chosen() * infinite.seen(*towards).aimed_sr / start.pdf
+                let seen = self.seen_from(index, infinite, reference, *towards, aim);
+                chosen() * seen.aimed_sr / start.pdf
             }
             _ => chosen() / self.starts.probability(index) * (start.unlearnt.point / start.pdf),
         }

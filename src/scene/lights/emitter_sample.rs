@@ -1,11 +1,8 @@
 //! Emitter points as seen from a reference: sampled by next-event estimation or hit by a camera subpath.
 
-use super::{Disk, EmitterPoint, Geometry, Lights, light_sampler::Taken};
+use super::{Aim, Disk, EmitterPoint, Geometry, Lights, light_sampler::Taken};
 use crate::{
-    emitter::{
-        BeamEmitter, BeamModel, InfiniteModel, Kind, PointEmitter, PointModel, Seen, SurfaceModel,
-        VolumeEmitter,
-    },
+    emitter::{BeamEmitter, BeamModel, Kind, PointEmitter, PointModel, Seen, SurfaceModel, VolumeEmitter},
     math::{Spectrum, Vec3, measure},
     sampling::Stream,
     settings::options::Sky,
@@ -39,16 +36,16 @@ impl Lights {
         &self,
         geometry: &Geometry,
         reference: Vec3,
-        sky: Sky,
+        aim: Aim<'_>,
         stream: &mut Stream,
     ) -> Option<EmitterSample> {
-        let connections = self.connections(sky);
+        let connections = self.connections(aim.sky);
         if connections.is_empty() {
             return None;
         }
         let (index, cell) = match connections.sample(reference, stream) {
             Taken::Emitter(index, chosen) => {
-                return self.sample_point_of(geometry, index, chosen, reference, stream);
+                return self.sample_point_of(geometry, (index, chosen), reference, aim, stream);
             }
             Taken::Medium(index, cell) => (index, cell),
         };
@@ -66,9 +63,9 @@ impl Lights {
     pub fn sample_point_of(
         &self,
         geometry: &Geometry,
-        index: usize,
-        chosen: f32,
+        (index, chosen): (usize, f32),
         reference: Vec3,
+        aim: Aim<'_>,
         stream: &mut Stream,
     ) -> Option<EmitterSample> {
         let light = &self.all[index];
@@ -79,7 +76,7 @@ impl Lights {
             }
             Kind::Point(point) => self.point_sample(index, point, chosen, reference),
             Kind::Infinite(sky) => {
-                let (towards, seen) = sky.aim(stream);
+                let (towards, seen) = self.aim_at_infinity(index, sky, reference, aim, stream);
                 self.infinite_sample(index, towards, seen, chosen)
             }
             Kind::Beam(beam) => self.beam_sample(index, beam, chosen, reference),
@@ -217,10 +214,11 @@ impl Lights {
 
     /// What a camera subpath from `reference` found by leaving the scene in unit `direction`; none where nothing is
     /// there.
-    pub fn infinity_hit(&self, direction: Vec3, reference: Vec3, sky: Sky) -> Option<EmitterSample> {
+    pub fn infinity_hit(&self, direction: Vec3, reference: Vec3, aim: Aim<'_>) -> Option<EmitterSample> {
         let index = self.environment? as usize;
         let environment = self.all[index].emitter.environment()?;
-        let chosen = self.connections(sky).probability(index, reference);
-        self.infinite_sample(index, direction, environment.seen(direction), chosen)
+        let chosen = self.connections(aim.sky).probability(index, reference);
+        let seen = self.seen_from(index, environment, reference, direction, aim);
+        self.infinite_sample(index, direction, seen, chosen)
     }
 }

@@ -7,6 +7,7 @@
 //! (discrete for a beam, which has one), and per volume (1/m^3) for emissive media. For how camera subpaths sample a
 //! point in a medium, and so the density of s = 0, see [`Emission::rate`].
 
+mod aim;
 mod clearings;
 mod disk;
 mod emission_sample;
@@ -20,6 +21,7 @@ mod point;
 mod starts;
 mod volume;
 
+pub use aim::Aim;
 pub use clearings::Clearings;
 pub use disk::Disk;
 pub use emission_sample::{EmissionSample, Emitted};

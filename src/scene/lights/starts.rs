@@ -14,24 +14,24 @@
 //! A part of p'(w | x) aims at portals. Light of a sky comes through a hole from all directions, and for each of them the
 //! hole lies elsewhere on the disk: a table needs thousands of starts to know it, a portal a few.
 
-use super::{Disk, EmitterPoint, Lights};
+use super::{Disk, EmitterPoint, Lights, aim::Openings};
 use crate::{
     math::{Vec2, Vec3, warp},
     sampling::{
         Cells, Discrete, Quadtree, Stream,
         cells::Keyed,
         crossings::{self, Search},
-        portal::{Aimed, Passage, Portal},
+        portal::{Aimed, MOST_AIMED, Passage, Portal},
         quadtree::{Deposit, effective, limit},
     },
 };
 
 /// a: the part of the starts that are not learnt.
-const UNLEARNT: f32 = 0.25;
+pub(super) const UNLEARNT: f32 = 0.25;
 /// Fewest starts, as [`effective`] counts them, in a cell of positions.
-const PER_CELL: f64 = 256.0;
+pub(super) const PER_CELL: f64 = 256.0;
 /// Levels of cells below the root.
-const LEVELS: u32 = 7;
+pub(super) const LEVELS: u32 = 7;
 /// Fewer starts than this, as [`effective`] counts them, make no table. The emitters' own probabilities count as so many.
 const ENOUGH: f64 = 16.0;
 /// For portals, of each emitter. Most starts are of different walks, so that few of them hardly cross by chance.
@@ -46,7 +46,7 @@ const MOST_OF_FEW: f64 = 4.0;
 pub struct Start {
     /// The emitter.
     pub light: u32,
-    /// The point that emits; from infinity any point of the ray.
+    /// The point that emits; from infinity any point of the ray. What portals learn from is where light first arrives.
     pub position: Vec3,
     /// Unit direction of the light.
     pub direction: Vec3,
@@ -82,6 +82,8 @@ pub struct Starts {
     emitters: Discrete,
     /// Of each emitter.
     learnt: Vec<Learnt>,
+    /// Of the environment, for next-event estimation.
+    pub(super) openings: Openings,
 }
 
 /// Those of one emitter. What is not known is as the emitter has it.
@@ -117,12 +119,17 @@ impl Starts {
         let each = known / totals.iter().sum::<f64>();
         let own = |index| ENOUGH * f64::from(lights.starts.probability(index));
         let emitters = Discrete::new(totals.iter().enumerate().map(|(index, sum)| each * sum + own(index)));
-        let learn = |(index, starts): (usize, Vec<(Start, f32)>)| {
+        let learn = |(index, starts): (usize, &Vec<(Start, f32)>)| {
             let over_unlearnt = over_unlearnt(&emitters, lights, index);
-            Learnt::of(lights, index, over_unlearnt, &starts)
+            Learnt::of(lights, index, over_unlearnt, starts)
         };
-        let learnt = of_emitters.into_iter().enumerate().map(learn).collect();
-        Some(Self { emitters, learnt })
+        let learnt: Vec<Learnt> = of_emitters.iter().enumerate().map(learn).collect();
+        let openings = |sky: u32| {
+            let emitter = lights.all[sky as usize].emitter.environment()?;
+            Some(Openings::learn(&learnt[sky as usize].aimed, emitter, &of_emitters[sky as usize]))
+        };
+        let openings = lights.environment.and_then(openings).unwrap_or_default();
+        Some(Self { emitters, learnt, openings })
     }
 
     /// The same for `lights` of another time; none if the emitters differ.
@@ -198,7 +205,7 @@ impl Starts {
     /// Memory that they take (bytes).
     pub fn bytes(&self) -> usize {
         let learnt: usize = self.learnt.iter().map(Learnt::bytes).sum();
-        self.emitters.bytes() + size_of_val(&self.learnt[..]) + learnt
+        self.emitters.bytes() + size_of_val(&self.learnt[..]) + learnt + self.openings.bytes()
     }
 
     /// Density of `point` of the emitter `light`, given its density `unlearnt` by the emitter alone.
@@ -308,7 +315,7 @@ impl Lights {
         };
         let passages = || starts.iter().enumerate().map(passage);
         let portals = crossings::find(passages(), 2.0 * self.radius, SEARCH);
-        Aimed::of(&portals, passages())
+        Aimed::of(&portals, passages(), MOST_AIMED)
     }
 
     /// Where on the unit square `start` has its direction, or its point of the disk.

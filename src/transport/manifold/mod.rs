@@ -31,7 +31,7 @@ use crate::{
     sampling::Stream,
     scene::{
         Scene,
-        lights::{EmitterSample, Light},
+        lights::{Aim, EmitterSample, Light},
     },
     shape::{Ray, SurfacePoint},
 };
@@ -108,7 +108,10 @@ impl<P: Profile, R: Observer> CameraPath<'_, P, R> {
         }
         let last = links[links.len() - 1].position.as_vec3();
         let Scene { lights, geometry, .. } = self.estimator.scene;
-        let Some(sample) = lights.sample_point_of(geometry, lamp, chosen, last, stream) else { return };
+        let Some(sample) = lights.sample_point_of(geometry, (lamp, chosen), last, Aim::default(), stream)
+        else {
+            return;
+        };
         let (s, t) = (1 + links.len() as u32, edges + 1);
         self.observer.start();
         let contribution = self.bent(body, vertex, &sample, target, chain, stream);

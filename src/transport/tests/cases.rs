@@ -147,7 +147,7 @@ pub(super) fn long_cases<P: Profile>(
     let mut cases = Cases { scene, hidden: estimator.hide_emitters, hero: 0, all: Vec::new() };
     let last = &camera.vertices[length - 1];
     let sample = (0..100)
-        .find_map(|_| scene.lights.sample_emitter(&scene.geometry, last.position(), estimator.sky, stream))
+        .find_map(|_| scene.lights.sample_emitter(&scene.geometry, last.position(), estimator.aim(), stream))
         .unwrap();
     let of_eye = |count| chain(&camera.vertices[..count], false);
     let of_light = |count| chain(&light.vertices[..count], false);
@@ -251,7 +251,7 @@ fn of_eye<P: Profile>(
         if can_join(estimator, vertex)
             && estimator.counts.next_event > 0.0
             && let Some(sample) =
-                scene.lights.sample_emitter(&scene.geometry, vertex.position(), estimator.sky, stream)
+                scene.lights.sample_emitter(&scene.geometry, vertex.position(), estimator.aim(), stream)
         {
             let contribution = camera.visitor.join_emitter(vertex, &sample, stream);
             cases.add(
@@ -265,7 +265,7 @@ fn of_eye<P: Profile>(
     }
     of_flights(estimator, camera, cases, stream);
     if let Some(subpath) = &camera.escaped
-        && let Some(sample) = scene.lights.infinity_hit(-subpath.incoming, previous, estimator.sky)
+        && let Some(sample) = scene.lights.infinity_hit(-subpath.incoming, previous, estimator.aim())
     {
         let before = chain(&camera.vertices, subpath.after_dirac);
         cases.add_hit(emitter_of(&sample), before, camera.visitor.emitter_hit(subpath, &sample, previous));

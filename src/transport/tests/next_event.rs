@@ -1,14 +1,14 @@
 //! Emitter points: however one was found, it has the same densities from the same reference.
 
-use super::scenes::*;
+use super::{scenes::*, starts};
 use crate::{
     math::{Vec3, vec3},
     sampling::{Stream, stream::Purpose},
     scene::{
         Scene,
-        lights::{EmitterPoint, EmitterSample},
+        build::Setup,
+        lights::{Aim, EmitterPoint, EmitterSample, Starts},
     },
-    settings::options::Sky,
     testing::{chi_square, significance},
 };
 
@@ -21,17 +21,22 @@ fn references(stream: &mut Stream) -> Vec<Vec3> {
 }
 
 /// The density of `sample`'s point if a camera subpath from `reference` had hit it; none of points and directions.
-fn density_of_hit(scene: &Scene, sample: &EmitterSample, reference: Vec3) -> Option<EmitterSample> {
+fn density_of_hit(
+    scene: &Scene,
+    sample: &EmitterSample,
+    reference: Vec3,
+    aim: Aim<'_>,
+) -> Option<EmitterSample> {
     let Scene { lights, geometry, .. } = scene;
     match sample.point {
         EmitterPoint::Surface(point) => {
-            lights.surface_hit(geometry, sample.light, &point, reference, Sky::NextEvent)
+            lights.surface_hit(geometry, sample.light, &point, reference, aim.sky)
         }
         EmitterPoint::Volume { position, .. } => {
-            lights.volume_hit(sample.light, position, reference, Sky::NextEvent)
+            lights.volume_hit(sample.light, position, reference, aim.sky)
         }
         EmitterPoint::Direction(towards) => {
-            let hit = lights.infinity_hit(towards, reference, Sky::NextEvent);
+            let hit = lights.infinity_hit(towards, reference, aim);
             hit.filter(|hit| hit.light == sample.light)
         }
         EmitterPoint::Point(_) | EmitterPoint::Beam { .. } => None,
@@ -44,22 +49,28 @@ fn is_close(a: f32, b: f32) -> bool {
 
 fn check(name: &str, parts: &[&str]) {
     let setup = build(parts);
+    check_learnt(name, &setup, None);
+    check_learnt(&format!("{name}, learnt"), &setup, Some(&starts::lessons(&setup)));
+}
+
+fn check_learnt(name: &str, setup: &Setup, starts: Option<&Starts>) {
+    let aim = Aim { starts, ..Aim::default() };
     let Scene { lights, geometry, .. } = &setup.scene;
     let mut stream = Stream::new(19, 0, 0, Purpose::Study);
     let (mut hits, mut starts) = (0, 0);
     for reference in references(&mut stream) {
         for _ in 0..100 {
-            if let Some(sample) = lights.sample_emitter(geometry, reference, Sky::NextEvent, &mut stream)
-                && let Some(hit) = density_of_hit(&setup.scene, &sample, reference)
+            if let Some(sample) = lights.sample_emitter(geometry, reference, aim, &mut stream)
+                && let Some(hit) = density_of_hit(&setup.scene, &sample, reference, aim)
             {
                 let same = is_close(hit.pdf, sample.pdf) && is_close(hit.pdf_start, sample.pdf_start);
                 assert!(same, "{name} at {reference}: {sample:?} sampled, {hit:?} hit");
                 hits += 1;
             }
             let Some(start) = lights.sample_emission(geometry, None, &mut stream) else { continue };
-            let by_ratio = start.pdf * lights.connect_over_start(geometry, &start, reference, Sky::NextEvent);
+            let by_ratio = start.pdf * lights.connect_over_start(geometry, &start, reference, aim);
             let seen = EmitterSample { light: start.light, point: start.point, ..DARK };
-            if let Some(hit) = density_of_hit(&setup.scene, &seen, reference) {
+            if let Some(hit) = density_of_hit(&setup.scene, &seen, reference, aim) {
                 assert!(
                     is_close(hit.pdf, by_ratio),
                     "{name} at {reference}: {by_ratio} by {start:?}, {hit:?}"
@@ -111,7 +122,7 @@ fn emitters_come_as_often_as_they_should() {
     for reference in &references(&mut stream) {
         let (mut observed, mut expected) = ([0; 41], [0.0; 41]);
         for _ in 0..DRAWS {
-            let sample = lights.sample_emitter(geometry, *reference, Sky::NextEvent, &mut stream).unwrap();
+            let sample = lights.sample_emitter(geometry, *reference, Aim::default(), &mut stream).unwrap();
             observed[sample.light as usize] += 1;
             expected[sample.light as usize] = f64::from(sample.pdf) * DRAWS as f64;
         }

@@ -14,7 +14,9 @@ use crate::{
     sampling::{Stream, stream::Purpose},
     scene::{
         Scene,
-        lights::{self, Densities, EmissionSample, EmitterPoint, EmitterSample, Light, Pivot, Start, Starts},
+        lights::{
+            self, Aim, Densities, EmissionSample, EmitterPoint, EmitterSample, Light, Pivot, Start, Starts,
+        },
     },
     shape::SurfacePoint,
     transport::{
@@ -177,7 +179,7 @@ impl<'a> Reference<'a> {
             return self
                 .scene
                 .lights
-                .infinity_hit(direction, reference, self.sky)
+                .infinity_hit(direction, reference, self.aim())
                 .map_or(0.0, |sample| f64::from(sample.pdf_start));
         }
         if let Place::VolumeEmitter(position, light) = path.nodes[0].place {
@@ -277,6 +279,11 @@ impl<'a> Reference<'a> {
         f64::from(pdf)
     }
 
+    /// How next-event estimation aims at emitters.
+    fn aim(&self) -> Aim<'_> {
+        Aim { sky: self.sky, starts: self.learnt.as_deref() }
+    }
+
     /// The emitter's vertex as next-event estimation finds it from the next vertex.
     pub(super) fn emitter_sample(&self, path: &Path) -> Option<EmitterSample> {
         let (lights, geometry) = (&self.scene.lights, &self.scene.geometry);
@@ -286,7 +293,7 @@ impl<'a> Reference<'a> {
                 lights.surface_hit(geometry, path.light, &point, reference, self.sky)
             }
             (Kind::Infinite(_), Place::Sky(direction)) if self.emitter(path).environment().is_some() => {
-                lights.infinity_hit(direction, reference, self.sky)
+                lights.infinity_hit(direction, reference, self.aim())
             }
             (Kind::Medium(_), Place::VolumeEmitter(position, light)) => {
                 lights.volume_hit(light, position, reference, self.sky)
@@ -301,7 +308,7 @@ impl<'a> Reference<'a> {
                     _ => false,
                 };
                 (0..4_096)
-                    .filter_map(|_| lights.sample_emitter(geometry, reference, self.sky, &mut stream))
+                    .filter_map(|_| lights.sample_emitter(geometry, reference, self.aim(), &mut stream))
                     .find(found)
             }
         }

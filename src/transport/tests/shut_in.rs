@@ -5,8 +5,7 @@ use crate::{
     math::{Bounds, Vec3},
     medium::MediumIndex,
     sampling::{Stream, stream::Purpose},
-    scene::Scene,
-    settings::options::Sky,
+    scene::{Scene, lights::Aim},
     shape::Ray,
 };
 
@@ -36,7 +35,7 @@ fn sees_nothing(scene: &Scene) -> bool {
         let mut stream = Stream::new(8, index, 0, Purpose::Study);
         let within = Vec3::from_array([(); 3].map(|()| stream.uniform()));
         let position = low + (high - low) * (0.25 + 0.5 * within);
-        let sample = scene.lights.sample_emitter(&scene.geometry, position, Sky::NextEvent, &mut stream);
+        let sample = scene.lights.sample_emitter(&scene.geometry, position, Aim::default(), &mut stream);
         sample.is_none_or(|sample| {
             let Some((direction, square)) = sample.point.seen_from(position) else { return true };
             let t_max = if sample.point.is_infinite() { f32::INFINITY } else { 0.999 * square.sqrt() };

@@ -6,7 +6,7 @@ use crate::{
     sampling::{Stream, stream::Purpose},
     scene::{
         build::Setup,
-        lights::{Densities, EmissionSample, Light, Start, Starts},
+        lights::{Aim, Densities, EmissionSample, EmitterPoint, EmitterSample, Light, Start, Starts},
     },
     testing,
 };
@@ -144,6 +144,52 @@ fn follow_their_densities(name: &str, setup: &Setup, learnt: &Starts, most: f64)
     let densities = learnt.densities(lights, &sample.start(), sample.unlearnt);
     assert_eq!(densities, Densities { point: sample.pdf, direction: sample.pdf_direction });
     by_learnt
+}
+
+/// Directions to a sky that are sampled through portals, against those without, counted as often as the densities say; and
+/// what both bring. From around the portal, from far away and from within it.
+#[test]
+fn directions_through_portals_come_as_often_as_their_densities_say() {
+    let mut found = Vec::new();
+    for sky in [SKY, SKY_IMAGE] {
+        let setup = build(&[OUTSIDE, GROUND, LAMP, BULB, sky]);
+        let (learnt, lights) = (lessons(&setup), &setup.scene.lights);
+        let light = lights.environment.unwrap();
+        let centre = learnt.portals(light as usize).next().expect("a portal").smallest.centre;
+        for reference in [vec3(0.6, 0.7, -0.5), vec3(-0.9, 0.2, 0.4), vec3(0.0, 0.0, 1e6), centre] {
+            let sample = |aim: Aim<'_>, seed: u64| -> Vec<(Start, EmitterSample)> {
+                let mut stream = Stream::new(seed, 0, 0, Purpose::Study);
+                let pick = |_| lights.sample_emitter(&setup.scene.geometry, reference, aim, &mut stream);
+                let of_sky = |sample: EmitterSample| match sample.point {
+                    EmitterPoint::Direction(to) => {
+                        Some((Start { light, position: reference, direction: -to }, sample))
+                    }
+                    _ => None,
+                };
+                (0..400_000).filter_map(pick).filter_map(of_sky).collect()
+            };
+            let (aim, plain) = (Aim { starts: Some(&learnt), ..Aim::default() }, Aim::default());
+            let (by_portals, by_sky) = (sample(aim, 1), sample(plain, 2));
+            let ratio = |start: &Start, sample: &EmitterSample| {
+                let hit = lights.infinity_hit(-start.direction, reference, aim).unwrap();
+                f64::from(hit.pdf / sample.pdf)
+            };
+            let came = tally(by_portals.iter().map(|(start, _)| (*start, 1.0)));
+            let due = tally(by_sky.iter().map(|(start, sample)| (*start, ratio(start, sample))));
+            let brings = |all: &[(Start, EmitterSample)]| {
+                tally(all.iter().map(|(start, one)| (*start, f64::from(one.value.luminance() / one.pdf))))
+            };
+            found.extend([worst(&came, &due), worst(&brings(&by_portals), &brings(&by_sky))]);
+            let unaimed = |(start, sample): &(Start, EmitterSample)| {
+                f64::from(lights.unaimed(Some(&learnt), start)) * ratio(start, sample)
+            };
+            assert!(by_sky.iter().map(unaimed).all(|one| (one - 1.0).abs() < 1e-4), "{reference}");
+            let denser = by_sky.iter().filter(|(start, sample)| ratio(start, sample) > 1.5).count();
+            assert!(denser > 0 || reference.length() > 1e3 || reference == centre, "{reference}: no portal");
+        }
+    }
+    let most = -statrs_z(testing::significance(8 * found.len()) / 2.0);
+    assert!(found.iter().all(|z| *z < most), "{found:?} standard errors, at most {most}");
 }
 
 /// z below which a standard normal number falls with probability `p`.
