@@ -11,6 +11,7 @@ use crate::{
     analysis::guide::{self, Cells, FILES, Portal, Report},
     error::{Error, Result},
     passes::budget::Budget,
+    transport,
 };
 use clap::Args;
 use std::{num::NonZeroUsize, path::PathBuf};
@@ -57,8 +58,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         let remedy = "choose --integrator bdpt, pt or lt";
         return Err(Error::new("--integrator", "an integrator that is no preview", algorithm.name(), remedy));
     }
-    let starts = arguments.estimator.starts.unwrap_or(true);
-    settings.options.effort.learnt_starts = starts && settings.options.strategies.use_starts(&setup.scene);
+    let transport::Options { strategies, effort, .. } = &mut settings.options;
+    // As renders learn them.
+    let starts = arguments.estimator.starts.unwrap_or(strategies.need_light_walks());
+    effort.learnt_starts = starts && strategies.use_starts(&setup.scene, effort.sky);
     let folder = outputs::folder(arguments.output.as_ref(), &arguments.scene, "guide")?;
     outputs::check_short(&FILES.map(|name| folder.join(name)))?;
     let findings = scene::threads(arguments.threads)?

@@ -9,7 +9,7 @@ use crate::{
     math::{Vec3, warp},
     sampling::{
         Basis, Quadtree, Stream,
-        portal::{Aimed, MOST_AIMED, Portal},
+        portal::{Aimed, Portal},
         quadtree::{Deposit, effective},
     },
 };
@@ -51,7 +51,7 @@ pub(super) struct Tabulator<'a> {
 impl Directions {
     /// None where directions are better left to the BSDF or the phase function.
     pub(super) fn learn(lessons: &[&Lesson], portals: &[Portal], tabulator: Tabulator<'_>) -> Option<Self> {
-        let aimed = Aimed::of(portals, lessons.iter().map(|lesson| lesson.passage()), MOST_AIMED);
+        let aimed = Aimed::of(portals, lessons.iter().map(|lesson| lesson.passage()));
         let rest = 1.0 - aimed.share();
         let is_aimed =
             |lesson: &&Lesson| portals.iter().any(|portal| lesson.passage().crosses(&portal.outermost()));

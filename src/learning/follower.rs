@@ -28,6 +28,8 @@ pub(super) struct Follower<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Followed {
     pub start: Start,
+    /// Where its light first arrives: next-event estimation would connect from there.
+    pub arrives: Vec3,
     /// Density of light subpaths' starts there without learnt starts, over that with them.
     pub unlearnt: f32,
     /// The number of the light subpath that started there.
@@ -63,7 +65,8 @@ impl<'a> Follower<'a> {
         let learnt = Densities { point: sample.pdf, direction: sample.pdf_direction };
         let walk = Some(self.walks);
         self.walks += 1;
-        self.current = Some(Followed { start, unlearnt: ratio(sample.unlearnt, learnt), walk });
+        let unlearnt = ratio(sample.unlearnt, learnt);
+        self.current = Some(Followed { start, arrives: start.position, unlearnt, walk });
     }
 
     pub(super) fn depart(&mut self, leg: &Leg) {
@@ -72,10 +75,8 @@ impl<'a> Follower<'a> {
 
     pub(super) fn arrive(&mut self, event: &Event<'_>) {
         self.last = event.position();
-        if let (1, Some(current)) = (event.arrival.edges, &mut self.current)
-            && self.lights.environment == Some(current.start.light)
-        {
-            current.start.position = self.last;
+        if let (1, Some(current)) = (event.arrival.edges, &mut self.current) {
+            current.arrives = self.last;
         }
     }
 
@@ -104,8 +105,8 @@ impl<'a> Follower<'a> {
     }
 
     /// See [`Lights::unaimed`].
-    pub(super) fn unaimed(&self, start: &Start) -> f32 {
-        self.lights.unaimed(self.starts, start)
+    pub(super) fn unaimed(&self, followed: &Followed) -> f32 {
+        self.lights.unaimed(self.starts, &followed.start, followed.arrives)
     }
 
     /// See [`Lights::without_sky`], from the last vertex.
@@ -122,7 +123,8 @@ impl<'a> Follower<'a> {
         let start = Start::towards(sample.light, &sample.point, reference, direction);
         let unlearnt = Densities { point: sample.pdf_start, direction: sample.pdf_direction };
         let learnt = self.starts.map(|starts| starts.densities(self.lights, &start, unlearnt));
-        Followed { start, unlearnt: learnt.map_or(1.0, |learnt| ratio(unlearnt, learnt)), walk: None }
+        let unlearnt = learnt.map_or(1.0, |learnt| ratio(unlearnt, learnt));
+        Followed { start, arrives: reference, unlearnt, walk: None }
     }
 }
 

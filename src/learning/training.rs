@@ -340,7 +340,8 @@ impl<'a> Training<'a> {
         let Some(trial) = trial else { return false };
         (known.tasks, known.segments) = (end, known.segments + trial.segments);
         if let Some(compete) = wanted.starts {
-            known.latest.starts = Starts::learn(&scene.lights, trial.weights(compete)).map(Arc::new);
+            known.latest.starts =
+                Starts::learn(&scene.lights, trial.weights(compete), trial.arriving()).map(Arc::new);
         }
         let mut learnt = known.latest.clone();
         if let Some(strategies) = wanted.guide {

@@ -130,6 +130,20 @@ impl Trial {
         all
     }
 
+    /// The same for next-event estimation. They are said to begin where the light first arrives, and count by the shares of
+    /// all strategies that may sample their directions, if next-event estimation is one of them.
+    pub(super) fn arriving(&self) -> Vec<(Start, f32)> {
+        let value = self.values();
+        let arriving = |found: &Found| {
+            let Followed { start, arrives, .. } = found.start?;
+            let joined = found.shares[StrategyKind::NextEvent as usize];
+            let weight = if joined > 0.0 { value(found) * (joined + found.by_light()) } else { 0.0 };
+            Some((Start { position: arrives, ..start }, weight))
+        };
+        let all = self.found.iter().flatten().filter_map(arriving);
+        all.filter(|(_, weight)| weight.is_finite() && *weight > 0.0).collect()
+    }
+
     /// The part that `guide`, which the samples followed, left of the second moment of `strategies`.
     pub(super) fn second_moment(&self, strategies: Strategies, guide: &Guide) -> f64 {
         let value = self.values();
@@ -244,6 +258,7 @@ impl BlockObserver for Recorder<'_> {
 
     fn lit(&mut self) {
         self.light = std::mem::take(&mut self.found);
+        self.follower.leave_light();
         self.transport = Transport::Radiance;
     }
 

@@ -229,7 +229,7 @@ pub struct Effort {
     pub light_walks: f32,
     /// Connections from each vertex of the camera subpath to vertices of light subpaths, above 0.
     pub connections: u32,
-    /// Light subpaths start where training found that light reaches the image, and next-event estimation looks for the
+    /// Light subpaths start where training found that light reaches the image, and next-event estimation aims at the
     /// environment through the same openings.
     pub learnt_starts: bool,
     /// How the environment is found.

@@ -106,8 +106,10 @@ impl<P: Profile> Estimator<'_, P> {
     #[inline]
     pub(super) fn learnt(&self, start: impl FnOnce() -> Start, unlearnt: Densities) -> Densities {
         match &self.starts {
-            None => unlearnt,
-            Some(starts) => starts.densities(&self.scene.lights, &start(), unlearnt),
+            Some(starts) if self.needs_light_walks() => {
+                starts.densities(&self.scene.lights, &start(), unlearnt)
+            }
+            _ => unlearnt,
         }
     }
 

@@ -1,6 +1,9 @@
 //! The kinds of strategies, and sets of them.
 
-use crate::{scene::Scene, settings::options::Strategies};
+use crate::{
+    scene::{Scene, lights::Lights},
+    settings::options::{Sky, Strategies},
+};
 
 /// The kinds of strategies, as [`Strategies`] switches them on and off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -83,9 +86,12 @@ impl Strategies {
         self.connection || self.lens
     }
 
-    /// True if learnt starts make a difference: to light subpaths, or to next-event estimation of a sky, by their portals.
-    pub fn use_starts(self, scene: &Scene) -> bool {
-        self.need_light_walks() || self.next_event && scene.lights.environment.is_some()
+    /// True if learnt starts change something: light subpaths, or next-event estimation of the environment, which is found
+    /// by `sky`.
+    pub fn use_starts(self, scene: &Scene, sky: Sky) -> bool {
+        let Lights { environment, .. } = &scene.lights;
+        let joins_sky = self.next_event && environment.is_some() && scene.lights.connects_to_sky(sky);
+        self.need_light_walks() || joins_sky
     }
 
     /// The same without strategies of `kind`.

@@ -118,7 +118,7 @@ impl Estimator {
         let guide = self.guiding(scene, algorithm, heuristic)?;
         let sky = self.sky(setup, strategies).unwrap_or(scene.effort.sky);
         let effort =
-            Effort { guide, learnt_starts: self.learnt_starts(setup, strategies), sky, ..scene.effort };
+            Effort { guide, learnt_starts: self.learnt_starts(setup, strategies, sky), sky, ..scene.effort };
         let options = Options {
             algorithm,
             strategies,
@@ -158,11 +158,11 @@ impl Estimator {
         self.sky.filter(|_| applies)
     }
 
-    fn learnt_starts(&self, setup: &Setup, strategies: Strategies) -> bool {
-        let applies = strategies.use_starts(&setup.scene);
+    fn learnt_starts(&self, setup: &Setup, strategies: Strategies, sky: Sky) -> bool {
+        let applies = strategies.use_starts(&setup.scene, sky);
         if self.starts.is_some() && !applies {
             complain(
-                "warning: --starts has no effect: no strategy in use traces light subpaths, or connects to a sky",
+                "warning: --starts has no effect: no strategy in use traces light subpaths or connects to a sky",
             );
         }
         self.starts == Some(true) && applies

@@ -3,8 +3,8 @@
 //! By the balance heuristic, a sample of the contribution y has the second moment y^2 (sum of n p) / (sum of n' p)
 //! under counts n' in place of n (after Grittmann et al. 2022, Efficiency-Aware Multiple Importance Sampling). So paths
 //! of strategies that a choice leaves out count in full, however rarely its others make them: the pilot has seen them.
-//! With learnt starts, each contribution also says how often light subpaths would start there otherwise. The albedos of
-//! a path say how often walks would survive if they ended more often.
+//! With learnt starts, each contribution also says how often light subpaths would start there otherwise, and how often
+//! next-event estimation would find it. The albedos of a path say how often walks would survive if they ended more often.
 //!
 //! Two contributions to one sample also add their product to its second moment: a walk connected to a sky at each of
 //! many vertices brings a sum, a walk that hits the sky a single number. This product is known under other counts and
@@ -91,7 +91,7 @@ pub(crate) struct Forecast {
     pub(super) light: Works,
     /// The work of light subpaths without learnt starts.
     pub(super) light_unlearnt: Works,
-    /// Light subpaths began at learnt starts.
+    /// Light subpaths began at learnt starts, and next-event estimation aimed at their portals.
     pub(super) is_learnt: bool,
     /// When walks ended.
     pub(super) survival: Survival,

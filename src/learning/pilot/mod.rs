@@ -135,8 +135,8 @@ pub fn choose(scene: &Scene, film: &Film, settings: &Settings, decided: Decided)
         said => said == Guiding::Auto,
     };
     let guide = if asks { Guiding::Never } else { settings.options.effort.guide };
-    let learnt_starts = decided.starts == Some(true) && all.use_starts(scene);
     let sky = decided.sky.unwrap_or_default();
+    let learnt_starts = decided.starts == Some(true) && all.use_starts(scene, sky);
     let effort = Effort { learnt_starts, guide, sky, ..Effort::default() };
     let base = Choice { among: all, strategies: all, effort, gain: 1.0 };
     let work = settings.budget.samples_of(film.len());
@@ -153,7 +153,7 @@ pub fn choose(scene: &Scene, film: &Film, settings: &Settings, decided: Decided)
 /// Decisions made before the pilot.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Decided {
-    /// Whether light subpaths begin at learnt starts.
+    /// Whether starts are learnt, see [`Effort::learnt_starts`].
     pub starts: Option<bool>,
     /// How the environment is found.
     pub sky: Option<Sky>,
@@ -333,11 +333,13 @@ impl Pilots<'_> {
         let differ = |(light_walks, connections): &(f32, u32)| {
             (walks || *light_walks == 1.0) && (strategies.connection || *connections == 1)
         };
-        let starts: &[bool] = match self.decided.starts {
-            _ if !strategies.use_starts(self.scene) => &[false],
-            Some(true) => &[true],
-            None if knows_starts => &[false, true],
-            _ => &[false],
+        let starts = |sky: Sky| -> &[bool] {
+            match self.decided.starts {
+                _ if !strategies.use_starts(self.scene, sky) => &[false],
+                Some(true) => &[true],
+                None if knows_starts => &[false, true],
+                _ => &[false],
+            }
         };
         let is_open = self.decided.sky.is_none() && strategies.emitter_hit && strategies.next_event;
         let skies: &[Sky] = match is_open && self.scene.lights.has_lamps_besides_sky() {
@@ -347,8 +349,8 @@ impl Pilots<'_> {
         let mut choices = Vec::new();
         for (light_walks, connections) in COUNTS.into_iter().filter(differ) {
             for survival in self.survivals().iter().copied() {
-                for (learnt_starts, sky) in
-                    starts.iter().flat_map(|starts| skies.iter().map(move |sky| (*starts, *sky)))
+                for (sky, learnt_starts) in
+                    skies.iter().flat_map(|sky| starts(*sky).iter().map(move |starts| (*sky, *starts)))
                 {
                     let effort =
                         Effort { survival, light_walks, connections, learnt_starts, sky, ..self.base.effort };

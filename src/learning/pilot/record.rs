@@ -263,7 +263,7 @@ impl Observer for Recorder<'_> {
         let Contribution { value, shares, transmittance, .. } = found;
         let expected = found.expected.luminance() / transmittance.luminance();
         let [unlearnt, unaimed, without_sky] = self.follower.start(s, t, &meeting).map_or([1.0; 3], |one| {
-            [one.unlearnt, self.follower.unaimed(&one.start), self.follower.without_sky(one.start.light)]
+            [one.unlearnt, self.follower.unaimed(&one), self.follower.without_sky(one.start.light)]
         });
         let (ends, kind, sample) = (self.ends(s, t, &meeting), meeting.kind(s, t), self.sums.len() as u32);
         let found = &mut self.recorded.found;

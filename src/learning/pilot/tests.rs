@@ -79,7 +79,7 @@ fn light_subpaths_must_be_better_for_a_denoiser() {
 }
 
 #[test]
-fn path_tracing_has_no_light_starts_to_learn() {
+fn path_tracing_has_no_light_subpaths_to_see() {
     let (setup, settings) = small("efficiency/glass_fog_sky.xml", Strategies::PT);
     assert_eq!(flown(&setup, &settings, false).seen_subpaths(), None);
 }

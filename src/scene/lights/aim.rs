@@ -7,13 +7,13 @@
 
 use super::{
     Lights, Start, Starts,
-    starts::{LEVELS, PER_CELL, UNLEARNT},
+    starts::{LEVELS, PER_CELL, UNLEARNT, limited},
 };
 use crate::{
     emitter::{InfiniteEmitter, InfiniteModel, Kind, Seen},
     math::Vec3,
     sampling::{
-        Cells, Stream,
+        Cells, Stream, Thinning,
         cells::Keyed,
         portal::{Aimed, Passage, Portal},
     },
@@ -22,6 +22,8 @@ use crate::{
 
 /// Largest part of the directions to a sky that aims at portals.
 const MOST: f32 = 1.0 - UNLEARNT;
+/// Arrivals of light that teach, about.
+const MOST_KNOWN: f32 = 16_384.0;
 
 /// How next-event estimation aims at emitters.
 #[derive(Clone, Copy, Debug, Default)]
@@ -32,27 +34,35 @@ pub struct Aim<'a> {
     pub starts: Option<&'a Starts>,
 }
 
-/// The portals of a sky, and how much of its light comes through each, by where it arrives: rooms are lit through
-/// windows, and what is outside is not.
+/// The portals of a sky, and which part of next-event estimation aims at each, by where light arrives: rooms are lit
+/// through windows, and what is outside is not.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Openings(Cells<3, Aimed>);
 
 impl Openings {
-    /// With `portals`, from the `starts` of the sky's light, each of which says where it arrives.
-    pub(super) fn learn(aimed: &Aimed, sky: &InfiniteEmitter, starts: &[(Start, f32)]) -> Self {
-        let portals: Vec<Portal> = aimed.portals().iter().map(|(_, portal)| *portal).collect();
-        if portals.is_empty() {
+    /// With the `portals` of the environment `sky`, from light that begins where it arrives.
+    pub(super) fn learn(
+        lights: &Lights,
+        sky: u32,
+        portals: &[Portal],
+        mut arriving: Vec<(Start, f32)>,
+    ) -> Self {
+        let Some(emitter) = lights.all[sky as usize].emitter.environment().filter(|_| !portals.is_empty())
+        else {
             return Self::default();
-        }
-        let arriving = |(start, weight): &(Start, f32)| {
-            let passage = arriving(sky, start, *weight);
+        };
+        arriving.retain(|(start, _)| start.light == sky);
+        limited(&mut arriving);
+        let step = arriving.iter().map(|(_, weight)| weight).sum::<f32>() / MOST_KNOWN;
+        let mut thinning = Thinning::by(step);
+        let known = arriving.iter().filter_map(|(start, weight)| {
+            let passage = passage(emitter, start, thinning.keeps(*weight)?);
             let is_through = portals.iter().any(|portal| passage.crosses(&portal.smallest));
-            Arriving { passage, is_through }
-        };
-        let aimed = |all: Vec<Arriving>| {
-            Aimed::fitted(&portals, all.into_iter().map(|arriving| arriving.passage), MOST)
-        };
-        Self(Cells::learn(starts.iter().map(arriving).collect(), PER_CELL, LEVELS, aimed))
+            Some(Arriving { passage, is_through })
+        });
+        Self(Cells::learn(known.collect(), PER_CELL, LEVELS, |all| {
+            Aimed::fitted(portals, all.into_iter().map(|one: Arriving| one.passage), MOST)
+        }))
     }
 
     /// Memory that they take (bytes).
@@ -62,13 +72,13 @@ impl Openings {
 
     /// As seen from `reference`; none without portals.
     #[inline]
-    fn from(&self, reference: Vec3) -> Option<&Aimed> {
+    fn at(&self, reference: Vec3) -> Option<&Aimed> {
         self.0.at(reference.to_array())
     }
 }
 
 /// The ray from where light of the `sky` arrives, back to it.
-fn arriving(sky: &InfiniteEmitter, start: &Start, weight: f32) -> Passage {
+fn passage(sky: &InfiniteEmitter, start: &Start, weight: f32) -> Passage {
     let (position, direction) = (start.position, -start.direction);
     let unaimed = sky.seen(direction).aimed_sr;
     Passage { position, direction, is_parallel: false, weight, unaimed, fold: 0 }
@@ -93,14 +103,13 @@ impl Keyed<3> for Arriving {
 }
 
 impl Lights {
-    /// Density of next-event estimation at `start` from where its light arrives without the portals of `learnt`, over that with them.
-    pub fn unaimed(&self, learnt: Option<&Starts>, start: &Start) -> f32 {
-        let Start { light, position, direction } = *start;
-        let (index, aim) = (light as usize, Aim { starts: learnt, ..Aim::default() });
+    /// The density of next-event estimation from `reference` at `start` without portals, over that with those of `learnt`.
+    pub fn unaimed(&self, learnt: Option<&Starts>, start: &Start, reference: Vec3) -> f32 {
+        let (index, aim) = (start.light as usize, Aim { starts: learnt, ..Aim::default() });
         let Kind::Infinite(sky) = &self.all[index].emitter.kind else { return 1.0 };
-        let Some(aimed) = self.openings(index, position, aim) else { return 1.0 };
-        let seen = sky.seen(-direction);
-        let ratio = seen.aimed_sr / with_portals(aimed, seen, position, -direction).aimed_sr;
+        let Some(aimed) = self.openings(index, reference, aim) else { return 1.0 };
+        let (towards, seen) = (-start.direction, sky.seen(-start.direction));
+        let ratio = seen.aimed_sr / with_portals(aimed, seen, reference, towards).aimed_sr;
         if ratio.is_finite() { ratio } else { 1.0 }
     }
 
@@ -127,7 +136,7 @@ impl Lights {
 
     /// What is seen of the emitter `index` at infinity from `reference` in unit direction `towards`.
     #[inline]
-    pub(super) fn seen_from(
+    pub(super) fn seen_towards(
         &self,
         index: usize,
         sky: &InfiniteEmitter,
@@ -144,8 +153,9 @@ impl Lights {
     /// all of it alike.
     #[inline]
     fn openings<'a>(&self, index: usize, reference: Vec3, aim: Aim<'a>) -> Option<&'a Aimed> {
-        let starts = aim.starts.filter(|_| self.environment == Some(index as u32))?;
-        starts.openings.from(reference)
+        let is_taken = self.environment == Some(index as u32) && self.connects_to_sky(aim.sky);
+        let starts = aim.starts.filter(|_| is_taken)?;
+        starts.openings.at(reference)
     }
 }
 
@@ -164,9 +174,11 @@ mod tests {
     use super::*;
     use crate::{
         description::Library,
-        emitter::{self, Emitter},
+        emitter,
         math::{vec3, warp},
+        medium::MediumIndex,
         sampling::{portal::Sphere, stream::Purpose},
+        scene::lights::Light,
         testing::object,
     };
 
@@ -174,11 +186,16 @@ mod tests {
     #[test]
     fn rooms_look_at_their_windows_and_the_ground_at_all_of_the_sky() {
         let hole = Sphere { centre: vec3(0.5, 0.0, 0.5), radius_squared: 0.01 };
-        let Emitter { kind: Kind::Infinite(sky), .. } =
-            emitter::build(&object("constant", &[]), &Library::default()).unwrap()
-        else {
-            panic!("a sky")
+        let emitter = emitter::build(&object("constant", &[]), &Library::default()).unwrap();
+        let light = Light {
+            emitter,
+            position: Vec3::ZERO,
+            shape: None,
+            medium: MediumIndex::VACUUM,
+            straddles: false,
+            clearings: None,
         };
+        let lights = Lights { all: vec![light], ..Lights::default() };
         let mut stream = Stream::new(23, 0, 0, Purpose::Study);
         let mut start = |index: u32| {
             let (at, height, to) = (stream.square(), stream.uniform(), warp::to_sphere(stream.square()));
@@ -189,13 +206,12 @@ mod tests {
             (Start { light: 0, position, direction: -towards }, 1.0)
         };
         let starts: Vec<(Start, f32)> = (0..8000).map(&mut start).collect();
-        let passages = || starts.iter().map(|(start, weight)| arriving(&sky, start, *weight));
-        let portal = Portal::fitted(hole, passages().collect::<Vec<_>>().iter());
-        let openings = Openings::learn(&Aimed::of(&[portal], passages(), 0.5), &sky, &starts);
+        let portal = Portal::fitted(hole, [].iter());
+        let openings = Openings::learn(&lights, 0, &[portal], starts.clone());
         for (place, expected) in [(vec3(0.2, -1.7, 0.3), 0.7..0.8), (vec3(0.8, 0.0, 0.9), 0.0..0.1)] {
-            let share = openings.from(place).unwrap().share();
+            let share = openings.at(place).unwrap().share();
             assert!(expected.contains(&share), "{place}: {share}");
         }
-        assert!(Openings::learn(&Aimed::default(), &sky, &starts).from(Vec3::ZERO).is_none());
+        assert!(Openings::learn(&lights, 0, &[], starts).at(Vec3::ZERO).is_none());
     }
 }

@@ -252,7 +252,7 @@ impl Lights {
                 connections.pdf_vol(index, &volume.emission, *position, reference) / start.pdf
             }
             (EmitterPoint::Direction(towards), Kind::Infinite(infinite)) => {
-                let seen = self.seen_from(index, infinite, reference, *towards, aim);
+                let seen = self.seen_towards(index, infinite, reference, *towards, aim);
                 chosen() * seen.aimed_sr / start.pdf
             }
             _ => chosen() / self.starts.probability(index) * (start.unlearnt.point / start.pdf),

@@ -218,7 +218,7 @@ impl Lights {
         let index = self.environment? as usize;
         let environment = self.all[index].emitter.environment()?;
         let chosen = self.connections(aim.sky).probability(index, reference);
-        let seen = self.seen_from(index, environment, reference, direction, aim);
+        let seen = self.seen_towards(index, environment, reference, direction, aim);
         self.infinite_sample(index, direction, seen, chosen)
     }
 }

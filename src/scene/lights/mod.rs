@@ -138,6 +138,12 @@ impl Lights {
         self.lamps.is_some()
     }
 
+    /// True if next-event estimation takes the environment, where there is one.
+    #[inline]
+    pub fn connects_to_sky(&self, sky: Sky) -> bool {
+        sky == Sky::NextEvent || self.lamps.is_none()
+    }
+
     /// Which emitter next-event estimation takes.
     #[inline]
     fn connections(&self, sky: Sky) -> &LightSampler {

@@ -21,7 +21,7 @@ use crate::{
         Cells, Discrete, Quadtree, Stream,
         cells::Keyed,
         crossings::{self, Search},
-        portal::{Aimed, MOST_AIMED, Passage, Portal},
+        portal::{Aimed, Passage, Portal},
         quadtree::{Deposit, effective, limit},
     },
 };
@@ -46,7 +46,7 @@ const MOST_OF_FEW: f64 = 4.0;
 pub struct Start {
     /// The emitter.
     pub light: u32,
-    /// The point that emits; from infinity any point of the ray. What portals learn from is where light first arrives.
+    /// The point that emits; from infinity any point of the ray.
     pub position: Vec3,
     /// Unit direction of the light.
     pub direction: Vec3,
@@ -100,16 +100,20 @@ pub(super) struct Learnt {
 }
 
 impl Starts {
-    /// Learns from `starts`, each with a weight, finite and at least 0; none where they tell nothing.
-    pub fn learn(lights: &Lights, mut starts: Vec<(Start, f32)>) -> Option<Self> {
+    /// Learns from `starts`, each with a weight, finite and at least 0; none where they tell nothing. Next-event estimation
+    /// learns from the light `arriving`, weighted likewise: starts that are said to begin where it arrives.
+    pub fn learn(
+        lights: &Lights,
+        mut starts: Vec<(Start, f32)>,
+        arriving: Vec<(Start, f32)>,
+    ) -> Option<Self> {
         // Emitters without power are never chosen: they have no density that could be mixed with another.
         let has_power = |start: &Start| lights.starts.probability(start.light as usize) > 0.0;
         starts.retain(|(start, weight)| *weight > 0.0 && has_power(start));
         if starts.len() < 2 * SEARCH.fewest as usize {
             return None;
         }
-        let most = MOST.max(MOST_OF_FEW / starts.len() as f64);
-        let known = limit(&mut starts, most, |(_, weight)| weight);
+        let known = limited(&mut starts);
         let mut of_emitters = vec![Vec::new(); lights.all.len()];
         for (start, weight) in starts {
             of_emitters[start.light as usize].push((start, weight));
@@ -124,12 +128,12 @@ impl Starts {
             Learnt::of(lights, index, over_unlearnt, starts)
         };
         let learnt: Vec<Learnt> = of_emitters.iter().enumerate().map(learn).collect();
-        let openings = |sky: u32| {
-            let emitter = lights.all[sky as usize].emitter.environment()?;
-            Some(Openings::learn(&learnt[sky as usize].aimed, emitter, &of_emitters[sky as usize]))
-        };
-        let openings = lights.environment.and_then(openings).unwrap_or_default();
-        Some(Self { emitters, learnt, openings })
+        let starts = Self { emitters, learnt, openings: Openings::default() };
+        let openings = lights.environment.map(|sky| {
+            let portals: Vec<Portal> = starts.portals(sky as usize).copied().collect();
+            Openings::learn(lights, sky, &portals, arriving)
+        });
+        Some(Self { openings: openings.unwrap_or_default(), ..starts })
     }
 
     /// The same for `lights` of another time; none if the emitters differ.
@@ -215,6 +219,12 @@ impl Starts {
         let start = Start::towards(light, point, lights.centre, direction);
         self.densities(lights, &start, Densities { point: unlearnt, direction: 1.0 }).point
     }
+}
+
+/// Limits the weights of `starts`; how many they are then, as [`effective`] counts them.
+pub(super) fn limited(starts: &mut [(Start, f32)]) -> f64 {
+    let most = MOST.max(MOST_OF_FEW / starts.len() as f64);
+    limit(starts, most, |(_, weight)| weight)
 }
 
 /// (1 - a) P'/P of the emitter `index`; 0 without power.
@@ -315,7 +325,7 @@ impl Lights {
         };
         let passages = || starts.iter().enumerate().map(passage);
         let portals = crossings::find(passages(), 2.0 * self.radius, SEARCH);
-        Aimed::of(&portals, passages(), MOST_AIMED)
+        Aimed::of(&portals, passages())
     }
 
     /// Where on the unit square `start` has its direction, or its point of the disk.
