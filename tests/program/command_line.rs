@@ -247,7 +247,7 @@ fn sums_know_the_step_that_was_marched_by() {
     let kept = "render scene.json --strategies hit,next-event,join,lens --spp 1 --guide always --sums c.sums";
     sandbox.run(kept).ends(0);
     sandbox.run(&format!("{kept} --resume --basis haar")).ends(0);
-    for (words, flag) in [("--starts learnt --integrator pt", "--starts"), ("--basis bins", "--basis")] {
+    for (words, flag) in [("--starts learnt --strategies hit", "--starts"), ("--basis bins", "--basis")] {
         let said = sandbox.run(&format!("render scene.json --spp 1 {words}")).ends(0).err();
         assert!(said.contains(&format!("{flag} has no effect")), "{said}");
     }
