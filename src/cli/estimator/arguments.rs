@@ -67,8 +67,8 @@ pub struct Estimator {
     /// Where light subpaths start [default: a pilot decides where emitters are far from view; emitted with --strategies]
     ///
     /// emitted: as emitters emit; learnt: where about a second of training found that light reaches the image, such as through
-    /// a small opening. Next-event estimation then aims at the sky through the same openings, by --integrator pt as well, which
-    /// has to ask for it. The expected image is the same.
+    /// a small opening. Next-event estimation then aims at the sky through the same openings. No pilot chooses this for
+    /// --integrator pt. The expected image is the same.
     #[arg(long, value_name = "NAME", value_parser = one_of(&STARTS), help_heading = heading::STUDIES)]
     pub starts: Option<bool>,
 

@@ -1,7 +1,7 @@
 //! How next-event estimation aims at emitters.
 //!
-//! Where a sky shines through an opening, most directions to it are blocked. Learnt starts know the opening, as a portal
-//! that light subpaths aim at; next-event estimation takes a part of its directions to the sky through the same portal.
+//! Where a sky shines through an opening, most directions to it are blocked. Learnt starts know the opening as a portal.
+//! Light subpaths aim at it, and so does a part of the directions that next-event estimation takes to the sky.
 //! (Bitterli, Novak and Jarosz 2015, Portal-Masked Environment Map Sampling, have the opening given as a rectangle.
 //! They sample the map behind it, which a portal does not.)
 
@@ -22,7 +22,7 @@ use crate::{
 
 /// Largest part of the directions to a sky that aims at portals.
 const MOST: f32 = 1.0 - UNLEARNT;
-/// Arrivals of light that teach, about.
+/// About so many arrivals of light teach. They fill half of the cells that the levels allow; more would only take time.
 const MOST_KNOWN: f32 = 16_384.0;
 
 /// How next-event estimation aims at emitters.
