@@ -12,7 +12,7 @@
 //! of a pixel.
 
 use super::{
-    Choice, End, WALKS_END,
+    CONNECTIONS, Choice, End, WALKS_END,
     moments::{Counts, Subpaths, Sums, Weighed},
     record::{Found, Part, Work, Works, part},
 };
@@ -183,8 +183,9 @@ impl Forecast {
         let mut camera_time = time::START * camera.walks + camera.segments;
         let dropped = (light.walks - light.begun).max(0.0);
         let mut light_time = time::START * light.begun + time::DROPPED * dropped + light.segments;
+        let counts = choice.counts();
         for kind in StrategyKind::ALL.into_iter().filter(|kind| strategies.has(*kind)) {
-            let factor = if kind == StrategyKind::Connection { f64::from(effort.connections) } else { 1.0 };
+            let factor = if kind == StrategyKind::Connection { counts[kind as usize] } else { 1.0 };
             camera_time += factor * time::TRY[kind as usize] * camera.tries[kind as usize];
             light_time += time::TRY[kind as usize] * light.tries[kind as usize];
         }
@@ -247,7 +248,8 @@ impl Forecast {
     ///   of its contribution is y^2 (sum of n p) / (sum of n' p).
     /// - Products of two contributions to one camera subpath. Given that subpath, its vertices are connected independently. So
     ///   each of the two becomes y' n'_k / n_k on average. If q_i is how much more often walks get as far as contribution
-    ///   i under another roulette, both come q times as often for the longer path, and each is smaller by its own q.
+    ///   i under another roulette, both come q times as often for the longer path, and each is smaller by its own q. Of m
+    ///   connections of one vertex there are m (m - 1) such products, so that m = 1 has none.
     /// - The squared mean, by pairs of different subpaths of a pixel: without bias.
     ///
     /// A connection through media has a random estimate t of the transmittance T, which the densities contain. A hit has none: its
@@ -256,13 +258,15 @@ impl Forecast {
         let counts = self.counts(choice);
         let mut moments = vec![0.0; self.tiles.len()];
         let mut subpaths = Subpaths::new(self.pixels.len());
+        let connections = f64::from(choice.effort.connections);
+        let again = repeated(connections) / repeated(f64::from(CONNECTIONS));
         for ((_, found), one) in self.found.iter().zip(weighed) {
             let density = counts.density(one);
             let moment = &mut moments[one.tile as usize];
             *moment += density.square(one, found.expected);
             let own = counts.of(found.kind, one);
             if found.kind != StrategyKind::Lens && own != 0.0 {
-                *moment += subpaths.add(found, one, one.value * own / density.all);
+                *moment += subpaths.add(found, one, one.value * own / density.all, again);
             }
         }
         self.relative(&moments, &self.squared_means(&subpaths.finish()))
@@ -345,6 +349,11 @@ pub(super) fn levels(tiles: &[Tile], across: usize, squares: &[f64]) -> Vec<f64>
         own * tile.mean + (1.0 - own) * around(index)
     };
     tiles.iter().enumerate().map(level).collect()
+}
+
+/// Of all pairs of connections of a vertex to so many light vertices, the part with two different ones.
+fn repeated(connections: f64) -> f64 {
+    (connections - 1.0) / connections
 }
 
 /// Of `end` among [`WALKS_END`].

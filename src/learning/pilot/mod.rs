@@ -37,6 +37,9 @@ const LARGEST_SHARE: f64 = 1.0 / 32.0;
 const UNSEEN: f64 = 0.5;
 /// Samples of each pixel that takes part: enough for a variance.
 const PASSES: usize = 4;
+/// Connections of a vertex: two, so that pairs of them are seen. What their light subpaths have in common, more of them
+/// do not average out.
+const CONNECTIONS: u32 = 2;
 /// Longest path. Where walks hardly ever end, later vertices would take most of the time and bring little of the light.
 const DEEPEST: u32 = 256;
 /// Uncommon choices must be better by this factor: pilots are noisy, and some do not see that light subpaths are spread
@@ -221,7 +224,8 @@ impl Pilots<'_> {
     /// A few samples of all strategies.
     fn fly(&self, learnt_starts: bool) -> Forecast {
         let Choice { effort, .. } = self.base;
-        let effort = Effort { survival: self.survivals()[0], learnt_starts, ..effort };
+        let effort =
+            Effort { survival: self.survivals()[0], learnt_starts, connections: CONNECTIONS, ..effort };
         let options = Options {
             strategies: self.strategies(),
             effort,
@@ -363,11 +367,11 @@ impl Pilots<'_> {
 }
 
 impl Choice {
-    /// Samples of every kind of strategy, over those at equal effort.
+    /// Samples of every kind of strategy, over those of a pilot.
     fn counts(&self) -> [f64; StrategyKind::ALL.len()] {
         StrategyKind::each(|kind| match kind {
             _ if !self.strategies.has(kind) => 0.0,
-            StrategyKind::Connection => f64::from(self.effort.connections),
+            StrategyKind::Connection => f64::from(self.effort.connections) / f64::from(CONNECTIONS),
             StrategyKind::Lens => f64::from(self.effort.light_walks),
             _ => 1.0,
         })

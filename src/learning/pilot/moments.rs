@@ -1,6 +1,9 @@
 //! What contributions of a pilot would add to second moments under other counts and ends; see [`super::forecast`].
 
-use super::{End, record::Found};
+use super::{
+    End,
+    record::{Found, Route, passed_one},
+};
 use crate::{settings::options::Survival, transport::strategy::StrategyKind};
 
 /// A contribution under one survival: its tile, its second moment, and the parts of strategies in its density.
@@ -17,18 +20,23 @@ pub(super) struct Weighed {
     pub passed: f32,
     /// The same for the walks of the strategy that found it.
     pub passed_own: f32,
+    /// The same for the light subpath of a connection, up to the vertex that is connected.
+    pub passed_light: f32,
 }
 
 impl Weighed {
     /// `found` in `tile`, if walks ended by `end` rather than by `before`.
     pub(super) fn of(tile: u32, found: &Found, end: End, before: Survival) -> Self {
-        let passed = found.ends.passed(end, before);
+        let Route { all, light, outermost } = found.route;
+        let passed = all.passed(end, before);
+        let one = |albedo| passed_one(albedo, end, before);
+        let [at_sensor, at_emitter] = outermost.map(one);
         // Of all vertices between, the walks survived all but one if connected to an emitter or the lens, and all but
-        // two if connected to each other.
-        let of_one = found.ends.passed_one(end, before);
+        // two, which might be any, if connected to each other.
+        let any = one(all.of_one());
         let [hits, next_event, connections, lens, equiangular] = found.shares;
         let shares =
-            [hits, next_event / of_one, connections / (of_one * of_one), lens / of_one, equiangular / of_one];
+            [hits, next_event / at_emitter, connections / (any * any), lens / at_sensor, equiangular / any];
         Self {
             tile,
             unlearnt: found.unlearnt,
@@ -39,6 +47,7 @@ impl Weighed {
             value: found.square.sqrt() as f32,
             passed,
             passed_own: shares[found.kind as usize] / found.shares[found.kind as usize],
+            passed_light: light.passed(end, before) / one(light.of_one()),
         }
     }
 }
@@ -113,29 +122,42 @@ pub(super) struct Subpaths {
     sample: u32,
     pixel: u32,
     sum: f64,
-    /// The same where longer paths follow.
+    /// The same where longer paths follow: the camera subpath has got that far, the light subpaths may not have.
     before: f64,
+    /// The vertex of the last connection, and the part of the connections from there in `before`.
+    vertex: u32,
+    here: f64,
 }
 
 impl Subpaths {
     /// None yet, of so many `pixels`.
     pub(super) fn new(pixels: usize) -> Self {
         let none = u32::MAX;
-        Self { pixels: vec![Sums::default(); pixels], sample: none, pixel: none, sum: 0.0, before: 0.0 }
+        let pixels = vec![Sums::default(); pixels];
+        Self { pixels, sample: none, pixel: none, sum: 0.0, before: 0.0, vertex: 0, here: 0.0 }
     }
 
     /// Adds a contribution, which is `value` if walks survive as in the pilot. Those of one subpath come in order of
-    /// path length. Returns what the products with those before add to the second moment.
+    /// path length. Returns what the products with those before add to the second moment. There are `again` times as
+    /// many pairs of connections from one vertex as all counts say.
     #[inline(always)]
-    pub(super) fn add(&mut self, found: &Found, one: &Weighed, value: f32) -> f64 {
+    pub(super) fn add(&mut self, found: &Found, one: &Weighed, value: f32, again: f64) -> f64 {
         if self.sample != found.sample {
             self.close();
             (self.sample, self.pixel, self.sum, self.before) = (found.sample, found.pixel, 0.0, 0.0);
+            self.vertex = 0;
+        }
+        if self.vertex != found.vertex {
+            (self.vertex, self.here) = (found.vertex, 0.0);
         }
         let arriving = f64::from(value * one.passed_own);
-        let products = 2.0 * arriving * self.before;
+        let products = 2.0 * arriving * (self.before + (again - 1.0) * self.here);
+        let before = f64::from(value / one.passed * one.passed_light);
         self.sum += arriving;
-        self.before += f64::from(value / one.passed);
+        self.before += before;
+        if found.kind == StrategyKind::Connection {
+            self.here += before;
+        }
         products
     }
 

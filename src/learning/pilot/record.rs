@@ -26,8 +26,7 @@ pub(super) struct Found {
     /// Squared luminance; from [`super::forecast::Forecast`] on, its part in the second moment of a pixel sample in a tile.
     pub square: f64,
     pub shares: [f32; StrategyKind::ALL.len()],
-    /// Where walks could end between the sensor and the emitter.
-    pub ends: Ends,
+    pub route: Route,
     /// How often light subpaths would start there without learnt starts, over how often they do.
     pub unlearnt: f32,
     /// How often next-event estimation would find its light without learnt starts, over how often it does.
@@ -41,6 +40,18 @@ pub(super) struct Found {
     /// Number of its camera subpath in the block. Contributions of one subpath follow each other, the shortest paths
     /// first.
     pub sample: u32,
+    /// Of a connection, its vertex on the camera subpath; else 0.
+    pub vertex: u32,
+}
+
+/// Where walks could end between the sensor and the emitter of a path.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Route {
+    pub all: Ends,
+    /// Where the light subpath could that a camera subpath is connected to.
+    pub light: Ends,
+    /// The logarithms of the albedos next to the sensor and next to the emitter.
+    pub outermost: [f32; 2],
 }
 
 /// The vertices that a walk scatters at.
@@ -49,6 +60,8 @@ pub(super) struct Ends {
     pub vertices: u32,
     /// The sum of the logarithms of their albedos.
     albedo: f32,
+    /// The logarithm of the first one's.
+    first: f32,
 }
 
 /// Least survival probability: what comes after a lesser one does not count.
@@ -56,12 +69,14 @@ const LEAST: f32 = 1e-3;
 
 impl Ends {
     /// A vertex that walks with roulette by `survival` survive with this `probability`.
-    fn at(probability: f32, survival: Survival) -> Self {
-        Self { vertices: 1, albedo: probability.max(LEAST).ln() / survival.exponent() }
+    pub(super) fn at(probability: f32, survival: Survival) -> Self {
+        let albedo = probability.max(LEAST).ln() / survival.exponent();
+        Self { vertices: 1, albedo, first: albedo }
     }
 
-    fn and(self, other: Self) -> Self {
-        Self { vertices: self.vertices + other.vertices, albedo: self.albedo + other.albedo }
+    pub(super) fn and(self, other: Self) -> Self {
+        let first = if self.vertices == 0 { other.first } else { self.first };
+        Self { vertices: self.vertices + other.vertices, albedo: self.albedo + other.albedo, first }
     }
 
     /// Probability that walks survive these vertices if they end by `now`, over that by the survival `before`.
@@ -75,19 +90,19 @@ impl Ends {
         (now - before.exponent() * self.albedo).exp()
     }
 
-    /// The same for one vertex more, of mean albedo.
-    pub(super) fn passed_one(self, now: End, before: Survival) -> f32 {
-        let now = match now {
-            End::AtOnce(survival) => survival.exponent(),
-            End::Late => 0.0,
-        };
-        ((now - before.exponent()) * self.of_one()).exp()
-    }
-
     /// The mean logarithm of the albedo.
-    fn of_one(self) -> f32 {
+    pub(super) fn of_one(self) -> f32 {
         self.albedo / self.vertices.max(1) as f32
     }
+}
+
+/// Probability that walks survive one vertex more, whose `albedo` has this logarithm, over that before.
+pub(super) fn passed_one(albedo: f32, now: End, before: Survival) -> f32 {
+    let now = match now {
+        End::AtOnce(survival) => survival.exponent(),
+        End::Late => 0.0,
+    };
+    ((now - before.exponent()) * albedo).exp()
 }
 
 /// How often something was done.
@@ -183,16 +198,34 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// The vertices of a path of `s` light and `t` camera vertices that met so.
-    fn ends(&self, s: u32, t: u32, meeting: &Meeting<'_>) -> Ends {
-        let own = |vertices: u32| self.ends.get(vertices as usize).copied().unwrap_or_default();
-        match meeting {
-            Meeting::Met(..) => own(t.saturating_sub(2)),
-            Meeting::Emitter(_) | Meeting::Bent { .. } => own(t - 1),
-            Meeting::Light(index, _) => own(t - 1).and(self.kept[self.follower.hero][*index]),
-            Meeting::Lens(_) => own(s - 1),
-            Meeting::Pivot(_, event, _) => Ends::at(event.survival, self.survival),
-        }
+    /// The walk at hand up to so many `vertices`, and the logarithm of the last one's albedo.
+    fn own(&self, vertices: u32) -> (Ends, f32) {
+        let up_to = |vertices: u32| self.ends.get(vertices as usize).copied().unwrap_or_default();
+        let own = up_to(vertices);
+        (own, own.albedo - up_to(vertices.saturating_sub(1)).albedo)
+    }
+
+    /// The route of `s` light and `t` camera vertices that met so.
+    fn route(&self, s: u32, t: u32, meeting: &Meeting<'_>) -> Route {
+        let light = match meeting {
+            Meeting::Light(index, _) => self.kept[self.follower.hero][*index],
+            _ => Ends::default(),
+        };
+        let (walk, last) = match meeting {
+            Meeting::Met(..) => self.own(t.saturating_sub(2)),
+            Meeting::Emitter(_) | Meeting::Bent { .. } | Meeting::Light(..) => self.own(t - 1),
+            Meeting::Lens(_) => self.own(s - 1),
+            Meeting::Pivot(_, event, _) => {
+                let pivot = Ends::at(event.survival, self.survival);
+                (pivot, pivot.albedo)
+            }
+        };
+        let outermost = match meeting {
+            Meeting::Lens(_) => [last, walk.first],
+            Meeting::Light(..) => [walk.first, light.first],
+            _ => [walk.first, last],
+        };
+        Route { all: walk.and(light), light, outermost }
     }
 }
 
@@ -265,7 +298,8 @@ impl Observer for Recorder<'_> {
         let [unlearnt, unaimed, without_sky] = self.follower.start(s, t, &meeting).map_or([1.0; 3], |one| {
             [one.unlearnt, self.follower.unaimed(&one), self.follower.without_sky(one.start.light)]
         });
-        let (ends, kind, sample) = (self.ends(s, t, &meeting), meeting.kind(s, t), self.sums.len() as u32);
+        let (route, kind, sample) = (self.route(s, t, &meeting), meeting.kind(s, t), self.sums.len() as u32);
+        let vertex = if kind == StrategyKind::Connection { t } else { 0 };
         let found = &mut self.recorded.found;
         let mut add = |pixel: u32, value: Spectrum| {
             let luminance = f64::from(value.luminance());
@@ -274,13 +308,14 @@ impl Observer for Recorder<'_> {
                 pixel,
                 square,
                 shares: *shares,
-                ends,
+                route,
                 unlearnt,
                 unaimed,
                 without_sky,
                 kind,
                 expected,
                 sample,
+                vertex,
             });
         };
         if let Meeting::Lens(film) = meeting {
