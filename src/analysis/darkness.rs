@@ -12,6 +12,7 @@ use crate::{
         build::Setup,
         lights::{Aim, Light},
     },
+    sensor::Sensor,
     shape::{Ray, SurfacePoint},
     transport::{Options, Segment, Strategies, profiles::Everything},
 };
@@ -65,8 +66,13 @@ struct End {
 pub fn reason(pixels: &[Spectrum], setup: &Setup, options: &Options) -> Option<String> {
     let light: f64 = pixels.iter().map(|pixel| f64::from(pixel.luminance())).sum();
     // Of a scene without light it has been said before.
-    if !is_dark(light / pixels.len() as f64, &setup.scene) || options.max_depth == Some(0) {
+    if !is_dark(light / pixels.len() as f64, &setup.scene) {
         return None;
+    }
+    if options.max_depth == Some(0) {
+        let text =
+            "the image is black: max_depth 0 leaves out all light. 1 shows emitters alone, 2 what they light";
+        return Some(text.to_owned());
     }
     let look = Look { setup, film: &setup.film };
     match (look.cause(), light == 0.0) {
@@ -104,8 +110,17 @@ fn unreached(scene: &Scene, options: &Options) -> String {
                 "no sample found light on paths of {least} segments or more, and min_depth leaves out the others"
             )
         }
-        None if is_bdpt => "no sample found light. It may be rare: take more samples".to_owned(),
-        None => "no sample found light. It may be rare: take more samples, or --integrator bdpt".to_owned(),
+        None if options.max_depth == Some(1) => {
+            let how =
+                if options.hide_emitters { "hide_emitters hides those in view" } else { "none is in view" };
+            format!("max_depth 1 shows emitters alone, and {how}. 2 shows what they light")
+        }
+        None => {
+            let too_long = |most| format!(", or take longer paths than max_depth ({most}) allows");
+            let longer = options.max_depth.map_or(String::new(), too_long);
+            let other = if is_bdpt { "" } else { ", or --integrator bdpt" };
+            format!("no sample found light. It may be rare{longer}: take more samples{other}")
+        }
     }
 }
 
@@ -231,6 +246,11 @@ impl Look<'_> {
             Cause::Away => "all lamps face away from the surfaces in view. An \"area\" emitter shines where the normals of its \
                             shape point: set \"flip_normals\", or turn the shape"
                 .to_owned(),
+            Cause::Nothing if matches!(self.setup.scene.sensor, Sensor::Irradiance(_)) => {
+                "no surface, medium or sky is in view of the irradiancemeter. Light straight from emitters without a size \
+                 (\"point\", \"spot\", \"directional\", ...) does not count, as in Mitsuba: make it an \"area\" emitter"
+                    .to_owned()
+            }
             Cause::Nothing => "no surface, medium or sky is in view. Check where the camera looks (\"to_world\")".to_owned(),
         }
     }

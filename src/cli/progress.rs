@@ -105,7 +105,20 @@ pub(super) fn noise_text(noise: Noise) -> String {
     match noise.uncertainty() {
         fine if fine < WELL_KNOWN => format!("noise {error}"),
         fair if fair < HARDLY_KNOWN => format!("noise {error} \u{b1} {}", percent(fair * noise.error)),
-        _ => format!("noise {error} (few bright samples carry it: it may be twice as high)"),
+        _ => {
+            let times = perhaps(noise.carriers);
+            format!("noise {error} (few bright samples carry it: it may be {times} as high)")
+        }
+    }
+}
+
+/// How much higher the noise may be that n pixels carry. The square of the estimate is the true one times chi^2 / n: one
+/// estimate in 20 is at least 16 (n = 1), 4.4 (2) or 2.4 (4) times too small.
+fn perhaps(carriers: f64) -> &'static str {
+    match carriers {
+        one if one < 1.5 => "ten times",
+        few if few < 3.0 => "four times",
+        _ => "twice",
     }
 }
 
@@ -135,6 +148,14 @@ mod tests {
         transport::{Options, profiles::ProfileName},
     };
     use std::time::Duration;
+
+    #[test]
+    fn the_fewer_carry_the_noise_the_less_it_says() {
+        let said = |carriers| noise_text(Noise { error: 0.01, carriers });
+        assert_eq!(said(1.0), "noise 1.0 % (few bright samples carry it: it may be ten times as high)");
+        assert!(said(2.0).contains("four times") && said(3.9).contains("twice"));
+        assert_eq!(said(1000.0), "noise 1.0 %");
+    }
 
     #[test]
     fn the_nearest_limit_counts() {

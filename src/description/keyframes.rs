@@ -94,6 +94,23 @@ impl Keyframes {
         })
     }
 
+    /// When each of its numbers is least and greatest (s) at the keys from `begin` to `end`. None of a transform: it has
+    /// no range.
+    pub fn extremes(&self, [begin, end]: [f64; 2]) -> Vec<f64> {
+        let is_meant =
+            |key: &&Key| (begin..=end).contains(&key.time) && !matches!(key.value.value, Value::Transform(_));
+        let keys: Vec<(f64, Vec<f64>)> =
+            self.keys.iter().filter(is_meant).map(|key| (key.time, numbers(&key.value.value))).collect();
+        let count = keys.first().map_or(0, |(_, numbers)| numbers.len());
+        let of_number = |index: usize| {
+            let order = |a: &&(f64, Vec<f64>), b: &&(f64, Vec<f64>)| a.1[index].total_cmp(&b.1[index]);
+            let [least, greatest] = [keys.iter().min_by(order), keys.iter().max_by(order)];
+            let differ = least.zip(greatest).filter(|(least, greatest)| least.1[index] != greatest.1[index]);
+            differ.map_or([None; 2], |(least, greatest)| [Some(least.0), Some(greatest.0)])
+        };
+        (0..count).flat_map(of_number).flatten().collect()
+    }
+
     /// The value with each number as `of` makes it from its curve.
     fn value(&self, of: impl Fn(&Curve) -> f64) -> Value {
         let times: Vec<f64> = self.keys.iter().map(|key| key.time).collect();

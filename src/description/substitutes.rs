@@ -153,6 +153,7 @@ const PARAMETERS: &[(&str, &[&str], &str)] = &[
     ),
     ("film", &["origin", "target", "up", "position", "lookat"], "write a \"to_world\" with a \"lookat\""),
     ("film", &["focal_distance"], "write \"focus_distance\""),
+    ("interior", &["medium"], "write \"interior\": the medium within; \"exterior\" is the one around"),
     ("sample_count", &["samples", "samples_per_pixel", "spp"], "write \"sample_count\""),
     (
         "max_depth",

@@ -1,20 +1,37 @@
 //! Checks that every plugin of a scene exists and is of the kind that its tag or place says. This runs before anything
 //! is built, so that a misspelt name is reported as that, with the nearest right one.
 
-use super::tags::{INSIDE, MITSUBA, derive, of_plugin, ours, whole_of};
+use super::tags::{INSIDE, MITSUBA, derive, of_plugin, ours, table, whole_of};
 use crate::{
-    description::{Object, Position, Value, substitutes, suggest},
+    description::{Object, Position, Property, Value, parameter::Kind, substitutes, suggest},
     error::{Error, Result},
 };
+use std::collections::HashMap;
 
 /// An error unless every plugin in `root` exists and is of the kind that its tag says. Builders report known plugins
 /// that are out of place.
 pub(crate) fn check(root: &Object) -> Result<()> {
-    check_below(root, "scene")
+    let mut known = HashMap::new();
+    identified(root, &mut known);
+    check_below(root, "scene", &known)
 }
 
-fn check_below(object: &Object, tag: &str) -> Result<()> {
+/// Objects by id.
+type Known<'a> = HashMap<&'a str, &'a Object>;
+
+/// Adds the objects of `object` that references may name, with their ids, to `known`.
+fn identified<'a>(object: &'a Object, known: &mut Known<'a>) {
     for property in &object.properties {
+        if let Value::Object(child) = &property.value {
+            known.extend(child.id.as_deref().map(|id| (id, child)));
+            identified(child, known);
+        }
+    }
+}
+
+fn check_below(object: &Object, tag: &str, known: &Known<'_>) -> Result<()> {
+    for property in &object.properties {
+        check_parameter(object, tag, property, known)?;
         let Value::Object(child) = &property.value else { continue };
         let derived = || derive(&child.plugin, &property.name, tag);
         let Some(child_tag) = child.tag.as_deref().or_else(derived) else {
@@ -29,9 +46,43 @@ fn check_below(object: &Object, tag: &str) -> Result<()> {
             Some(whole) => return Err(astray(child, whole)),
             None => check_tag(child, child_tag)?,
         }
-        check_below(child, child_tag)?;
+        check_below(child, child_tag, known)?;
     }
     Ok(())
+}
+
+/// An error if keyframes or a reference stand where the parameter cannot be one.
+fn check_parameter(object: &Object, tag: &str, property: &Property, known: &Known<'_>) -> Result<()> {
+    let (Value::Keyframes(_) | Value::Reference(_)) = &property.value else { return Ok(()) };
+    let row = table(tag, &object.plugin).and_then(|table| table.find(&property.name));
+    match (&property.value, row.map(|row| row.kind)) {
+        // A whole number has no values between two keys.
+        (Value::Keyframes(_), Some(Kind::Integer(_))) => {
+            let expected = format!("an integer for \"{}\", which cannot change in time", property.name);
+            Err(Error::new(&property.location, expected, property.value.describe(), "give one number"))
+        }
+        (Value::Reference(id), Some(Kind::Object(wanted))) => check_reference(property, id, wanted, known),
+        _ => Ok(()),
+    }
+}
+
+/// An error if the `property` refers to a known object that is not of the kind `wanted`.
+fn check_reference(property: &Property, id: &str, wanted: &'static str, known: &Known<'_>) -> Result<()> {
+    let Some(target) = known.get(id) else { return Ok(()) };
+    let tags = of_plugin(&target.plugin);
+    if tags.is_empty() || tags.contains(&wanted) {
+        return Ok(());
+    }
+    let expected = format!("{} for \"{}\"", kind(wanted), property.name);
+    let found = format!("a reference to \"{id}\", {} (\"{}\")", kind(tags[0]), target.plugin);
+    let mut there: Vec<&str> = known.keys().copied().collect();
+    there.retain(|id| of_plugin(&known[id].plugin).contains(&wanted));
+    there.sort_unstable();
+    let remedy = match there.is_empty() {
+        true => format!("write {} there, or define one with an id and refer to it", kind(wanted)),
+        false => suggest(id, &format!("refer to {}", kind(wanted)), &there),
+    };
+    Err(Error::new(&property.location, expected, found, remedy))
 }
 
 fn check_tag(object: &Object, tag: &str) -> Result<()> {

@@ -35,7 +35,7 @@ pub(super) fn read_whole(path: &Path, definitions: &[(String, String)]) -> Resul
     let found = match input::is_standard_input(path) {
         true => spelling_of(path, &text::of_file(path)?)?,
         false if is_volume(path) => Spelling::Json,
-        false => foreign::known(path).map_or_else(|| spelling(path), Err)?,
+        false => foreign::known(path).map_or_else(|| spelling_by_name(path), Err)?,
     };
     let mut draft = match found {
         Spelling::Xml => xml::read(path, &mut parameters)?,
@@ -68,6 +68,11 @@ fn spelling_of(path: &Path, text: &str) -> Result<Spelling> {
             "check what is written to standard input",
         )),
     }
+}
+
+/// The format of the file at `path` by its name. That of a file that is not there needs no other ending.
+fn spelling_by_name(path: &Path) -> Result<Spelling> {
+    if path.exists() { spelling(path) } else { text::of_file(path).and_then(|_| spelling(path)) }
 }
 
 /// True if the file at `path` is a scene by its name.

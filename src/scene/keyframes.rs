@@ -28,6 +28,17 @@ pub fn has_any(root: &Object) -> bool {
     })
 }
 
+/// Adds when something in `root` is at its least or greatest from `begin` to `end` (s) to `times`.
+pub fn extremes(root: &Object, [begin, end]: [f64; 2], times: &mut Vec<f64>) {
+    for property in &root.properties {
+        match &property.value {
+            Value::Object(child) => extremes(child, [begin, end], times),
+            Value::Keyframes(keyframes) => times.extend(keyframes.extremes([begin, end])),
+            _ => {}
+        }
+    }
+}
+
 /// Puts what `of` makes of keyframes in place of them.
 fn fill(value: &mut Value, time: f64, of: fn(&Keyframes, f64) -> Value) {
     match value {

@@ -20,7 +20,7 @@ pub struct Irradiance {
 
 impl Irradiance {
     pub(super) const TABLE: Table = table! {
-        "The mean irradiance on the shape that it is in. Its film has one pixel. As in Mitsuba, light straight from emitters without a size (`point`, `spot`, `directional`) does not count.";
+        "The mean irradiance on the shape that it is in. Its film has one pixel. As in Mitsuba, light straight from emitters without a size (`point`, `spot`, `projector`, `directional`, `collimated`) does not count.";
         object("shape", "shape", "The shape that it measures, by reference. Only where it is not inside one.").ours();
         ALL
     };

@@ -67,6 +67,29 @@ fn light_that_strategies_do_not_reach_is_named() {
 }
 
 #[test]
+fn paths_that_are_too_short_are_named() {
+    let parts = [wall(), ("sun", sun([0.0, 0.0, -1.0], 1.0))];
+    for (most, hint) in [(0, "max_depth 0 leaves out all light"), (1, "max_depth 1 shows emitters alone")] {
+        let found = said(BEFORE, &parts, &format!("--max-depth {most}"));
+        assert!(found.contains(&format!("the image is black: {hint}")), "no {hint}: {found}");
+    }
+    let shut = json!({"type": "cube", "bsdf": {"type": "diffuse", "reflectance": 0}});
+    let lamp = ("lamp", lamp_ball([0.0, 0.0, 0.0], 0.5, 1.0));
+    let found = said(BEFORE, &[("box", shut), lamp], "--max-depth 5");
+    assert!(found.contains("longer paths than max_depth (5) allows"), "{found}");
+}
+
+/// Light straight from a lamp without a size does not count, so that where to look is no remedy.
+#[test]
+fn a_black_meter_is_told_what_counts() {
+    let lamp = ("lamp", point([0.0, 0.0, 3.0], 1.0));
+    let screen = json!({"type": "rectangle", "meter": {"type": "irradiancemeter"}});
+    let sandbox = Sandbox::with_scene(&scene(&[("screen", screen), lamp]));
+    let said = sandbox.run("render scene.json --spp 4").ends(0).err();
+    assert!(said.contains("in view of the irradiancemeter") && said.contains("does not count"), "{said}");
+}
+
+#[test]
 fn a_lit_image_says_nothing() {
     for parts in [[wall(), ("sun", sun([0.0, 0.0, -1.0], 1.0))], [wall(), ("sky", sky(1e-20))]] {
         let said = said(BEFORE, &parts, "");

@@ -1,7 +1,7 @@
 //! The frames of an animation: when each is, and the scene that it shows.
 
 use super::{arguments::Render, features};
-use crate::cli::scene::built;
+use crate::cli::{parsers::Frames, scene::built};
 use crate::{
     description::{Object, Property, Value},
     error::{Error, Result},
@@ -41,6 +41,7 @@ impl<'a> Clip<'a> {
             Some(frames) => {
                 let setup = built(&self.at(self.time(frames.first)), self.arguments.overrides())?;
                 (frames.first..=frames.last).try_for_each(|frame| self.check(&setup, frame))?;
+                self.check_extremes(&setup, frames)?;
                 Ok(setup)
             }
         }
@@ -69,6 +70,23 @@ impl<'a> Clip<'a> {
         let time = self.time(frame);
         let missing = setup.smoke.iter().find_map(|taken| taken.at(time).err());
         missing.map_or(Ok(()), |error| Err(self.explain(frame, error)))
+    }
+
+    /// What changes stays in range: of all frames, those next to where it is least or greatest leave it first.
+    fn check_extremes(&self, setup: &Setup, frames: Frames) -> Result<()> {
+        let mut times = Vec::new();
+        keyframes::extremes(
+            &self.root,
+            [frames.first, frames.last].map(|frame| self.time(frame)),
+            &mut times,
+        );
+        let number = |time: f64| (time - self.time(0)) / (self.time(1) - self.time(0));
+        let next_to = |time: f64| [number(time).floor(), number(time).ceil()].map(|number| number as u32);
+        let mut next: Vec<u32> = times.into_iter().flat_map(next_to).collect();
+        next.sort_unstable();
+        next.dedup();
+        next.retain(|frame| (frames.first + 1..=frames.last).contains(frame));
+        next.into_iter().try_for_each(|frame| self.frame(frame, setup).map(|_| ()))
     }
 
     /// The scene at `time` (s).

@@ -259,14 +259,14 @@ impl Forecast {
         let mut moments = vec![0.0; self.tiles.len()];
         let mut subpaths = Subpaths::new(self.pixels.len());
         let connections = f64::from(choice.effort.connections);
-        let again = repeated(connections) / repeated(f64::from(CONNECTIONS));
+        let apart = apart(connections) / apart(f64::from(CONNECTIONS));
         for ((_, found), one) in self.found.iter().zip(weighed) {
             let density = counts.density(one);
             let moment = &mut moments[one.tile as usize];
             *moment += density.square(one, found.expected);
             let own = counts.of(found.kind, one);
             if found.kind != StrategyKind::Lens && own != 0.0 {
-                *moment += subpaths.add(found, one, one.value * own / density.all, again);
+                *moment += subpaths.add(found, one, one.value * own / density.all, apart);
             }
         }
         self.relative(&moments, &self.squared_means(&subpaths.finish()))
@@ -351,8 +351,8 @@ pub(super) fn levels(tiles: &[Tile], across: usize, squares: &[f64]) -> Vec<f64>
     tiles.iter().enumerate().map(level).collect()
 }
 
-/// Of all pairs of connections of a vertex to so many light vertices, the part with two different ones.
-fn repeated(connections: f64) -> f64 {
+/// Of all pairs of so many connections of a vertex, each with itself among them, the part of two different ones.
+fn apart(connections: f64) -> f64 {
     (connections - 1.0) / connections
 }
 

@@ -37,8 +37,8 @@ const LARGEST_SHARE: f64 = 1.0 / 32.0;
 const UNSEEN: f64 = 0.5;
 /// Samples of each pixel that takes part: enough for a variance.
 const PASSES: usize = 4;
-/// Connections of a vertex: two, so that pairs of them are seen. What their light subpaths have in common, more of them
-/// do not average out.
+/// Connections of a vertex: two, so that pairs of them are seen. More connections do not average out what they have in
+/// common.
 const CONNECTIONS: u32 = 2;
 /// Longest path. Where walks hardly ever end, later vertices would take most of the time and bring little of the light.
 const DEEPEST: u32 = 256;

@@ -27,7 +27,7 @@ pub(super) struct Weighed {
 impl Weighed {
     /// `found` in `tile`, if walks ended by `end` rather than by `before`.
     pub(super) fn of(tile: u32, found: &Found, end: End, before: Survival) -> Self {
-        let Route { all, light, outermost } = found.route;
+        let Route { all, light, outermost, connected: [camera_last, light_last] } = found.route;
         let passed = all.passed(end, before);
         let one = |albedo| passed_one(albedo, end, before);
         let [at_sensor, at_emitter] = outermost.map(one);
@@ -46,8 +46,11 @@ impl Weighed {
             shares,
             value: found.square.sqrt() as f32,
             passed,
-            passed_own: shares[found.kind as usize] / found.shares[found.kind as usize],
-            passed_light: light.passed(end, before) / one(light.of_one()),
+            passed_own: match found.kind {
+                StrategyKind::Connection => 1.0 / one(camera_last + light_last),
+                kind => shares[kind as usize] / found.shares[kind as usize],
+            },
+            passed_light: light.passed(end, before) / one(light_last),
         }
     }
 }
@@ -122,9 +125,9 @@ pub(super) struct Subpaths {
     sample: u32,
     pixel: u32,
     sum: f64,
-    /// The same where longer paths follow: the camera subpath has got that far, the light subpaths may not have.
+    /// The same given that the camera subpath gets that far.
     before: f64,
-    /// The vertex of the last connection, and the part of the connections from there in `before`.
+    /// The vertex of the last contribution, if it was a connection, and the part of those from there in `before`.
     vertex: u32,
     here: f64,
 }
@@ -138,24 +141,24 @@ impl Subpaths {
     }
 
     /// Adds a contribution, which is `value` if walks survive as in the pilot. Those of one subpath come in order of
-    /// path length. Returns what the products with those before add to the second moment. There are `again` times as
-    /// many pairs of connections from one vertex as all counts say.
+    /// path length. Returns what the products with those before add to the second moment. Products of two connections
+    /// from one vertex count `apart` times.
     #[inline(always)]
-    pub(super) fn add(&mut self, found: &Found, one: &Weighed, value: f32, again: f64) -> f64 {
+    pub(super) fn add(&mut self, found: &Found, one: &Weighed, value: f32, apart: f64) -> f64 {
         if self.sample != found.sample {
             self.close();
             (self.sample, self.pixel, self.sum, self.before) = (found.sample, found.pixel, 0.0, 0.0);
-            self.vertex = 0;
+            (self.vertex, self.here) = (0, 0.0);
         }
         if self.vertex != found.vertex {
             (self.vertex, self.here) = (found.vertex, 0.0);
         }
         let arriving = f64::from(value * one.passed_own);
-        let products = 2.0 * arriving * (self.before + (again - 1.0) * self.here);
+        let products = 2.0 * arriving * (self.before + (apart - 1.0) * self.here);
         let before = f64::from(value / one.passed * one.passed_light);
         self.sum += arriving;
         self.before += before;
-        if found.kind == StrategyKind::Connection {
+        if found.vertex != 0 {
             self.here += before;
         }
         products

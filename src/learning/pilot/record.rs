@@ -48,10 +48,12 @@ pub(super) struct Found {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Route {
     pub all: Ends,
-    /// Where the light subpath could that a camera subpath is connected to.
+    /// The part of these on the light subpath of a connection.
     pub light: Ends,
     /// The logarithms of the albedos next to the sensor and next to the emitter.
     pub outermost: [f32; 2],
+    /// Those of the two vertices that are connected, on the camera subpath and on the light subpath; 0 without them.
+    pub connected: [f32; 2],
 }
 
 /// The vertices that a walk scatters at.
@@ -60,8 +62,10 @@ pub(super) struct Ends {
     pub vertices: u32,
     /// The sum of the logarithms of their albedos.
     albedo: f32,
-    /// The logarithm of the first one's.
+    /// The logarithm of the first one's albedo.
     first: f32,
+    /// The same of the last one.
+    last: f32,
 }
 
 /// Least survival probability: what comes after a lesser one does not count.
@@ -71,12 +75,16 @@ impl Ends {
     /// A vertex that walks with roulette by `survival` survive with this `probability`.
     pub(super) fn at(probability: f32, survival: Survival) -> Self {
         let albedo = probability.max(LEAST).ln() / survival.exponent();
-        Self { vertices: 1, albedo, first: albedo }
+        Self { vertices: 1, albedo, first: albedo, last: albedo }
     }
 
     pub(super) fn and(self, other: Self) -> Self {
+        if other.vertices == 0 {
+            return self;
+        }
         let first = if self.vertices == 0 { other.first } else { self.first };
-        Self { vertices: self.vertices + other.vertices, albedo: self.albedo + other.albedo, first }
+        let (vertices, albedo) = (self.vertices + other.vertices, self.albedo + other.albedo);
+        Self { vertices, albedo, first, last: other.last }
     }
 
     /// Probability that walks survive these vertices if they end by `now`, over that by the survival `before`.
@@ -96,13 +104,13 @@ impl Ends {
     }
 }
 
-/// Probability that walks survive one vertex more, whose `albedo` has this logarithm, over that before.
-pub(super) fn passed_one(albedo: f32, now: End, before: Survival) -> f32 {
+/// Probability that walks survive one vertex more, the logarithm of whose albedo is `log_albedo`, over that before.
+pub(super) fn passed_one(log_albedo: f32, now: End, before: Survival) -> f32 {
     let now = match now {
         End::AtOnce(survival) => survival.exponent(),
         End::Late => 0.0,
     };
-    ((now - before.exponent()) * albedo).exp()
+    ((now - before.exponent()) * log_albedo).exp()
 }
 
 /// How often something was done.
@@ -198,11 +206,9 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// The walk at hand up to so many `vertices`, and the logarithm of the last one's albedo.
-    fn own(&self, vertices: u32) -> (Ends, f32) {
-        let up_to = |vertices: u32| self.ends.get(vertices as usize).copied().unwrap_or_default();
-        let own = up_to(vertices);
-        (own, own.albedo - up_to(vertices.saturating_sub(1)).albedo)
+    /// The walk at hand up to so many `vertices`.
+    fn own(&self, vertices: u32) -> Ends {
+        self.ends.get(vertices as usize).copied().unwrap_or_default()
     }
 
     /// The route of `s` light and `t` camera vertices that met so.
@@ -211,22 +217,50 @@ impl<'a> Recorder<'a> {
             Meeting::Light(index, _) => self.kept[self.follower.hero][*index],
             _ => Ends::default(),
         };
-        let (walk, last) = match meeting {
-            Meeting::Met(..) => self.own(t.saturating_sub(2)),
-            Meeting::Emitter(_) | Meeting::Bent { .. } | Meeting::Light(..) => self.own(t - 1),
+        let walk = match meeting {
+            // All vertices must be survived. By way of smooth surfaces, the last one need not.
+            Meeting::Met(..) | Meeting::Bent { .. } => self.own(t.saturating_sub(2)),
+            Meeting::Emitter(_) | Meeting::Light(..) => self.own(t - 1),
             Meeting::Lens(_) => self.own(s - 1),
-            Meeting::Pivot(_, event, _) => {
-                let pivot = Ends::at(event.survival, self.survival);
-                (pivot, pivot.albedo)
-            }
+            Meeting::Pivot(_, event, _) => Ends::at(event.survival, self.survival),
         };
-        let outermost = match meeting {
-            Meeting::Lens(_) => [last, walk.first],
-            Meeting::Light(..) => [walk.first, light.first],
-            _ => [walk.first, last],
+        let all = walk.and(light);
+        let (outermost, connected) = match meeting {
+            Meeting::Lens(_) => ([walk.last, walk.first], [0.0; 2]),
+            Meeting::Light(..) => ([walk.first, light.first], [walk.last, light.last]),
+            _ => ([walk.first, walk.last], [0.0; 2]),
         };
-        Route { all: walk.and(light), light, outermost }
+        Route { all, light, outermost, connected }
     }
+
+    /// What a contribution says of other counts of strategies.
+    fn counted(&self, s: u32, t: u32, meeting: &Meeting<'_>, contribution: &Contribution) -> Counted {
+        let Contribution { shares, transmittance, expected, .. } = contribution;
+        // By way of smooth surfaces, every vertex is connected once, however many other connections it has.
+        if matches!(meeting, Meeting::Bent { .. }) {
+            let kind = StrategyKind::EmitterHit;
+            let all = shares.iter().sum();
+            let shares = StrategyKind::each(|one| if one == kind { all } else { 0.0 });
+            return Counted { kind, shares, expected: 1.0, starts: [1.0; 3], vertex: 0 };
+        }
+        let starts = self.follower.start(s, t, meeting).map_or([1.0; 3], |one| {
+            [one.unlearnt, self.follower.unaimed(&one), self.follower.without_sky(one.start.light)]
+        });
+        let kind = meeting.kind(s, t);
+        let vertex = if kind == StrategyKind::Connection { t } else { 0 };
+        let expected = expected.luminance() / transmittance.luminance();
+        Counted { kind, shares: *shares, expected, starts, vertex }
+    }
+}
+
+/// See the fields of [`Found`].
+struct Counted {
+    kind: StrategyKind,
+    shares: [f32; StrategyKind::ALL.len()],
+    expected: f32,
+    /// Unlearnt, unaimed, and without the sky.
+    starts: [f32; 3],
+    vertex: u32,
 }
 
 impl BlockObserver for Recorder<'_> {
@@ -293,13 +327,10 @@ impl Observer for Recorder<'_> {
 
     fn contribute(&mut self, s: u32, t: u32, meeting: Meeting<'_>, contribution: Option<&Contribution>) {
         let Some(found) = contribution.filter(|c| c.value.is_finite()) else { return };
-        let Contribution { value, shares, transmittance, .. } = found;
-        let expected = found.expected.luminance() / transmittance.luminance();
-        let [unlearnt, unaimed, without_sky] = self.follower.start(s, t, &meeting).map_or([1.0; 3], |one| {
-            [one.unlearnt, self.follower.unaimed(&one), self.follower.without_sky(one.start.light)]
-        });
-        let (route, kind, sample) = (self.route(s, t, &meeting), meeting.kind(s, t), self.sums.len() as u32);
-        let vertex = if kind == StrategyKind::Connection { t } else { 0 };
+        let value = found.value;
+        let Counted { kind, shares, expected, starts: [unlearnt, unaimed, without_sky], vertex } =
+            self.counted(s, t, &meeting, found);
+        let (route, sample) = (self.route(s, t, &meeting), self.sums.len() as u32);
         let found = &mut self.recorded.found;
         let mut add = |pixel: u32, value: Spectrum| {
             let luminance = f64::from(value.luminance());
@@ -307,7 +338,7 @@ impl Observer for Recorder<'_> {
             found.push(Found {
                 pixel,
                 square,
-                shares: *shares,
+                shares,
                 route,
                 unlearnt,
                 unaimed,
@@ -324,9 +355,9 @@ impl Observer for Recorder<'_> {
                 self.is_seen = true;
             }
             let add = |pixel, value| add(pixel as u32, value);
-            return self.film_samples.splat(self.film, self.pass, film, *value, add);
+            return self.film_samples.splat(self.film, self.pass, film, value, add);
         }
-        let value = *value * self.weight;
+        let value = value * self.weight;
         if let Some((pixel, sum)) = self.sums.last_mut() {
             add(*pixel, value);
             *sum += f64::from(value.luminance());
