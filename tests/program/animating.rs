@@ -125,15 +125,20 @@ fn keyframes_are_the_same_in_either_format() {
     assert!(json == xml && json == back);
 }
 
-/// The sky is brighter than 0 in all frames but the second: nothing is rendered before that is known.
+/// The sky is brighter than 0 in all frames but the second, or the last two.
 #[test]
 fn what_leaves_its_range_is_refused_before_the_first_frame() {
-    let mut scene = animated();
-    scene["sky"]["radiance"] = json!({"type": "keyframes", "value": [[0, 1], [0.4, -1], [1, 1]]});
-    let sandbox = Sandbox::with_scene(&scene);
-    let run = sandbox.run("render scene.json -o a.exr --frames 0..3 --fps 3 --spp 1");
-    run.refuses(&["frame 1, at 0.3", "radiance"]);
-    assert!(!sandbox.path("a.0000.exr").exists());
+    for (keys, place) in [
+        (json!([[0, 1], [0.4, -1], [1, 1]]), "frame 1, at 0.3"),
+        (json!([[0, 1], [1, 0.1], [10, -100]]), "frame 4, at 1.3"),
+    ] {
+        let mut scene = animated();
+        scene["sky"]["radiance"] = json!({"type": "keyframes", "value": keys});
+        let sandbox = Sandbox::with_scene(&scene);
+        let run = sandbox.run("render scene.json -o a.exr --frames 0..4 --fps 3 --spp 1");
+        run.refuses(&[place, "radiance"]);
+        assert!(!sandbox.path("a.0000.exr").exists());
+    }
 }
 
 /// The animated scene, of which all passes see another moment.

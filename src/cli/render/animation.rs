@@ -72,7 +72,8 @@ impl<'a> Clip<'a> {
         missing.map_or(Ok(()), |error| Err(self.explain(frame, error)))
     }
 
-    /// What changes stays in range: of all frames, those next to where it is least or greatest leave it first.
+    /// What changes stays in range: of all frames, the last one and those next to where it is least or greatest leave it
+    /// first.
     fn check_extremes(&self, setup: &Setup, frames: Frames) -> Result<()> {
         let mut times = Vec::new();
         keyframes::extremes(
@@ -82,7 +83,7 @@ impl<'a> Clip<'a> {
         );
         let number = |time: f64| (time - self.time(0)) / (self.time(1) - self.time(0));
         let next_to = |time: f64| [number(time).floor(), number(time).ceil()].map(|number| number as u32);
-        let mut next: Vec<u32> = times.into_iter().flat_map(next_to).collect();
+        let mut next: Vec<u32> = times.into_iter().flat_map(next_to).chain([frames.last]).collect();
         next.sort_unstable();
         next.dedup();
         next.retain(|frame| (frames.first + 1..=frames.last).contains(frame));
