@@ -115,9 +115,15 @@ class Found:
         return self.told["reference"]["own_relmse"] or 0.0
 
     @property
+    def apart(self) -> dict[str, list[str]]:
+        """Whose image is another one, and what is said of it."""
+        said = {one["name"]: [note for note in one.get("notes", []) if "mean differs" in note] for one in self.told["contenders"]}
+        return {name: notes for name, notes in said.items() if notes}
+
+    @property
     def notes(self) -> list[str]:
         """Who could not render it and why, and whose image is another one."""
-        apart = [f"{one['name']}: {note}" for one in self.told["contenders"] for note in one.get("notes", []) if "mean differs" in note]
+        apart = [f"{name}: {note}" for name, notes in self.apart.items() for note in notes]
         return [*(note for note in self.told.get("notes", []) if not note.startswith(NOBODY)), *apart]
 
 

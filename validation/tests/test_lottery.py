@@ -36,3 +36,10 @@ def test_what_is_surely_worse_is_marked() -> None:
     assert lottery.line(row(1.3, 1.6)) == "| 3 | a room | alike | 1.6 [1.3, 2] | does not reach all light | 1 [1, 1] | WORSE |\npt: apart"
     text = lottery.summary([row(1, 1), row(3, 4)])
     assert "2 scenes, 1 of them marked" in text and "over best: geometric mean 2.00, mean 2.50" in text and "over pt" not in text
+
+
+def test_a_black_image_is_no_best() -> None:
+    """However little time it took."""
+    costs = {"alike": 0.3, "hit": 0.001, "pt": 0.5}
+    assert lottery.cheapest(costs, {"hit": ["its mean differs"]}) == "alike"
+    assert lottery.cheapest(costs, {}) == "hit"
