@@ -71,7 +71,14 @@ pub(super) fn run(arguments: &Convert) -> Result<()> {
     match (to_png, to_vol) {
         (true, _) => show(input, layer.as_deref(), output, *display),
         (_, true) => voxels(input, grid.as_deref(), output),
-        _ => scene(arguments),
+        _ if format::is_scene(output) => scene(arguments),
+        _ => {
+            let expected = "a file to write that ends in .xml or .json (of a scene), .png (of an image) or .vol (of a volume)";
+            let found = output.extension().map_or("a name without an extension".into(), |end| {
+                format!("one that ends in .{}", end.to_string_lossy())
+            });
+            Err(Error::new(output.display(), expected, found, "give it one of these endings"))
+        }
     }
 }
 

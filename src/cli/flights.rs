@@ -3,6 +3,7 @@
 use super::{
     console::{Answer, say},
     outputs::check_short,
+    parsers::seed,
 };
 use crate::{
     analysis::{
@@ -83,7 +84,7 @@ pub struct Flights {
     pub truth_photons: Option<u64>,
 
     /// Seed of all random numbers
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", value_parser = seed, default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,
 
     /// How the comparison is given.

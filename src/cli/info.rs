@@ -5,7 +5,7 @@ use super::{
     console::{Answer, say},
     estimator::Estimator,
     fit::Fit,
-    overview::Overview,
+    overview::{Overview, brief},
     parsers::positive_u32,
     picture,
     plan::{self, Plan},
@@ -309,8 +309,8 @@ fn describe_emitter(setup: &Setup, light: &Light) -> String {
     let group = light.emitter.group.as_ref().map_or(String::new(), |group| format!(", group {group}"));
     let Kind::Medium(glow) = &light.emitter.kind else { return format!("{name} in {medium}{group}") };
     let [low, high] = glow.emission.bounds().map(|corner| corner.as_dvec3() + setup.scene.recentre);
-    let [r, g, b] = glow.power().to_array();
-    format!("{name} {medium} itself, {r:.3} {g:.3} {b:.3} W, from {low:.3} to {high:.3}{group}")
+    let [r, g, b] = glow.power().to_array().map(brief);
+    format!("{name} {medium} itself, {r} {g} {b} W, from {low:.3} to {high:.3}{group}")
 }
 
 fn describe_medium(setup: &Setup, index: usize) -> String {

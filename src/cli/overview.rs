@@ -110,7 +110,7 @@ fn rounded(place: DVec3, length: f64) -> DVec3 {
 }
 
 /// Three digits.
-fn brief(x: f64) -> String {
+pub(super) fn brief(x: f64) -> String {
     let rounded: f64 = format!("{x:.2e}").parse().unwrap_or(x);
     if rounded.is_infinite() { "endless".to_owned() } else { rounded.to_string() }
 }

@@ -62,6 +62,10 @@ pub(super) fn positive_u32(text: &str) -> Result<u32, String> {
     }
 }
 
+pub(super) fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("expected a whole number from 0 to {}, such as 7", u64::MAX))
+}
+
 pub(super) fn contributions(text: &str) -> Result<u16, String> {
     let number = text.parse().ok().filter(|most| (1..=1000).contains(most));
     number.ok_or_else(|| "expected a number of contributions from 1 to 1000, such as 10".to_owned())

@@ -4,6 +4,7 @@ use super::{
     console::{self, Answer, say},
     explain,
     outputs::check_short,
+    parsers::seed,
 };
 use crate::{
     analysis::phase::{self, Check, Division, described, drawing, mesh::Mesh},
@@ -38,7 +39,7 @@ pub struct Phase {
     pub samples: u64,
 
     /// Seed of all random numbers
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", value_parser = seed, default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,
 
     /// Number of parallels that divide the sphere, both poles included; closer together near the poles

@@ -4,7 +4,7 @@ use super::{
     console::{self, Answer, say},
     estimator::Estimator,
     outputs,
-    parsers::{Size, positive_u32, size, threads},
+    parsers::{Size, positive_u32, seed, size, threads},
     scene::{self, Scene, load},
 };
 use crate::{
@@ -42,7 +42,7 @@ pub struct Arguments {
     pub depth: u32,
 
     /// Seed of all random numbers
-    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = seed, default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,
 
     /// Threads to render with [default: one per processor]

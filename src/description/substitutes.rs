@@ -154,6 +154,7 @@ const PARAMETERS: &[(&str, &[&str], &str)] = &[
     ("film", &["origin", "target", "up", "position", "lookat"], "write a \"to_world\" with a \"lookat\""),
     ("film", &["focal_distance"], "write \"focus_distance\""),
     ("interior", &["medium"], "write \"interior\": the medium within; \"exterior\" is the one around"),
+    ("interior", &["material", "shader", "brdf"], "write \"bsdf\": the material of the surface"),
     ("sample_count", &["samples", "samples_per_pixel", "spp"], "write \"sample_count\""),
     (
         "max_depth",

@@ -1,7 +1,7 @@
 //! Checks that every plugin of a scene exists and is of the kind that its tag or place says. This runs before anything
 //! is built, so that a misspelt name is reported as that, with the nearest right one.
 
-use super::tags::{INSIDE, MITSUBA, derive, of_plugin, ours, table, whole_of};
+use super::tags::{MITSUBA, by_name, derive, inside, of_plugin, ours, table, whole_of};
 use crate::{
     description::{Object, Position, Property, Value, parameter::Kind, substitutes, suggest},
     error::{Error, Result},
@@ -51,9 +51,11 @@ fn check_below(object: &Object, tag: &str, known: &Known<'_>) -> Result<()> {
     Ok(())
 }
 
-/// An error if keyframes or a reference stand where the parameter cannot be one.
+/// An error if keyframes, a reference or a word stand where the parameter cannot be one.
 fn check_parameter(object: &Object, tag: &str, property: &Property, known: &Known<'_>) -> Result<()> {
-    let (Value::Keyframes(_) | Value::Reference(_)) = &property.value else { return Ok(()) };
+    let (Value::Keyframes(_) | Value::Reference(_) | Value::String(_)) = &property.value else {
+        return Ok(());
+    };
     let row = table(tag, &object.plugin).and_then(|table| table.find(&property.name));
     match (&property.value, row.map(|row| row.kind)) {
         // A whole number has no values between two keys.
@@ -62,8 +64,41 @@ fn check_parameter(object: &Object, tag: &str, property: &Property, known: &Know
             Err(Error::new(&property.location, expected, property.value.describe(), "give one number"))
         }
         (Value::Reference(id), Some(Kind::Object(wanted))) => check_reference(property, id, wanted, known),
+        (Value::String(word), Some(Kind::Object(wanted))) => Err(mere_word(property, word, wanted, known)),
+        (Value::String(word), None) => {
+            let inside = inside(tag);
+            let of_plugin = |plugin: &str| of_plugin(plugin).into_iter().find(|tag| inside.contains(tag));
+            let named = inside.iter().find(|tag| **tag == by_name(&property.name)).copied();
+            let meant = || known.get(word.as_str()).map_or(word, |object| &object.plugin);
+            match named.or_else(|| of_plugin(meant())) {
+                Some(wanted) => Err(mere_word(property, word, wanted, known)),
+                None => Ok(()),
+            }
+        }
         _ => Ok(()),
     }
+}
+
+/// The error for a `word`, the name of a plugin or an id, in place of an object of the kind `wanted`.
+fn mere_word(property: &Property, word: &str, wanted: &'static str, known: &Known<'_>) -> Error {
+    let name = &property.name;
+    let is_json = matches!(property.location.position, Position::Path(_));
+    let is_wanted = |plugin: &str| of_plugin(plugin).contains(&wanted);
+    let remedy = match (known.get(word).is_some_and(|object| is_wanted(&object.plugin)), is_json) {
+        (true, true) => format!("write \"{name}\": {{\"type\": \"ref\", \"id\": \"{word}\"}}"),
+        (true, false) => format!("write <ref name=\"{name}\" id=\"{word}\"/>"),
+        (false, _) if !is_wanted(word) => {
+            suggest(word, &format!("write {} there; known", kind(wanted)), &plugins_of(wanted))
+        }
+        (false, true) => format!("write \"{name}\": {{\"type\": \"{word}\"}}"),
+        (false, false) => format!("write <{wanted} name=\"{name}\" type=\"{word}\"/>"),
+    };
+    Error::new(
+        &property.location,
+        format!("{} for \"{name}\"", kind(wanted)),
+        property.value.describe(),
+        remedy,
+    )
 }
 
 /// An error if the `property` refers to a known object that is not of the kind `wanted`.
@@ -90,7 +125,7 @@ fn check_tag(object: &Object, tag: &str) -> Result<()> {
     if ours.contains(&object.plugin.as_str()) || (ours.is_empty() && tags.contains(&tag)) {
         return Ok(());
     }
-    let known = if ours.is_empty() { renderable(tag).to_vec() } else { ours };
+    let known = plugins_of(tag);
     let instead = substitutes::of_plugin(&object.plugin, Some(tag));
     if tags.contains(&tag) {
         let found = format!("\"{}\", which only Mitsuba has", object.plugin);
@@ -164,10 +199,13 @@ pub(crate) fn unknown_in(object: &Object, parent: &str) -> Error {
 
 /// All plugins that are allowed in a `parent`.
 fn known_in(parent: &str) -> Vec<&'static str> {
-    let inside = INSIDE.iter().find(|(tag, _)| *tag == parent).map_or(&[][..], |(_, tags)| tags);
-    let known = |tag: &&'static str| match ours(tag) {
+    inside(parent).iter().flat_map(|tag| plugins_of(tag)).collect()
+}
+
+/// All plugins of the kind `tag` that can be rendered.
+pub(crate) fn plugins_of(tag: &str) -> Vec<&'static str> {
+    match ours(tag) {
         ours if ours.is_empty() => renderable(tag).to_vec(),
         ours => ours,
-    };
-    inside.iter().flat_map(known).collect()
+    }
 }

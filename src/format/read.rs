@@ -82,6 +82,9 @@ pub fn is_scene(path: &Path) -> bool {
 
 /// The format according to the extension of the file name.
 pub(super) fn spelling(path: &Path) -> Result<Spelling> {
+    if path.is_dir() {
+        return Err(Error::new(path.display(), "a scene file", "a folder", "name a file in it"));
+    }
     let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     match extension.as_deref() {
         Some("xml") => Ok(Spelling::Xml),

@@ -143,6 +143,11 @@ pub(crate) const INSIDE: [(&str, &[&str]); 13] = [
     ("volume", &["volume", "texture"]),
 ];
 
+/// Tags that may be nested in a `parent`.
+pub(crate) fn inside(parent: &str) -> &'static [&'static str] {
+    INSIDE.iter().find(|(tag, _)| *tag == parent).map_or(&[], |(_, tags)| tags)
+}
+
 /// Plugins that Tyndall itself builds under `tag`, with their tables.
 pub(crate) fn tables(tag: &str) -> Vec<(&'static str, &'static Table)> {
     match tag {
@@ -191,7 +196,7 @@ pub(crate) fn of_plugin(plugin: &str) -> Vec<&'static str> {
 /// The tag of a plugin called `plugin` that is the child `name` of a `parent`; none if that does not
 /// determine it.
 pub(crate) fn derive(plugin: &str, name: &str, parent: &str) -> Option<&'static str> {
-    let inside = INSIDE.iter().find(|(tag, _)| *tag == parent).map_or(&[][..], |(_, tags)| tags);
+    let inside = inside(parent);
     let by_plugin = of_plugin(plugin);
     if let [only] = by_plugin.as_slice() {
         // "fog" is an integrator, but within a shape it is meant to be a medium.
@@ -205,7 +210,7 @@ pub(crate) fn derive(plugin: &str, name: &str, parent: &str) -> Option<&'static 
 }
 
 /// The tag that a name refers to: itself, with or without a number, or the parameter that it is.
-fn by_name(name: &str) -> &str {
+pub(crate) fn by_name(name: &str) -> &str {
     match name {
         "interior" | "exterior" => "medium",
         "sigma_t" | "albedo" => "volume",

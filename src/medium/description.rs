@@ -161,6 +161,7 @@ fn homogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription> 
         return Err(params.complain("sigma_t", "a finite product with scale", format!("{sigma_t}")));
     }
     let albedo = volume::parameter(params, "albedo", place)?;
+    let emission = EmissionDescription::read(params, place, &albedo)?;
     let properties = |albedo| MediumProperties::of(sigma_t, albedo);
     let (properties, fields) = match albedo {
         Volume::Constant(albedo) => {
@@ -176,12 +177,7 @@ fn homogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription> 
         }
     };
     let medium = Medium::homogeneous(properties, phase(params, place)?);
-    Ok(MediumDescription {
-        medium,
-        location: Some(params.location().clone()),
-        fields,
-        emission: EmissionDescription::read(params, place)?,
-    })
+    Ok(MediumDescription { medium, location: Some(params.location().clone()), fields, emission })
 }
 
 const HETEROGENEOUS: Table = table! {
@@ -207,12 +203,9 @@ fn heterogeneous(params: &Params<'_>, place: &Place) -> Result<MediumDescription
         )
     };
     let medium = Medium::homogeneous(MediumProperties::NOTHING, phase(params, place)?);
-    Ok(MediumDescription {
-        medium,
-        location: Some(params.location().clone()),
-        fields: Some(fields),
-        emission: EmissionDescription::read(params, place)?,
-    })
+    let emission = EmissionDescription::read(params, place, &fields.albedo)?;
+    let location = Some(params.location().clone());
+    Ok(MediumDescription { medium, location, fields: Some(fields), emission })
 }
 
 fn scale(params: &Params<'_>) -> Result<f32> {

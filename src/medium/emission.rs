@@ -68,7 +68,7 @@ pub struct EmissionDescription {
 
 impl EmissionDescription {
     /// Reads `emission`, `radiance` or `temperature`, one of them at most, `emission_scale` and `group`.
-    pub fn read(params: &Params<'_>, place: &Place) -> Result<Option<Self>> {
+    pub fn read(params: &Params<'_>, place: &Place, albedo: &Volume) -> Result<Option<Self>> {
         let scale = params.float("emission_scale")? as f32;
         let (group, mut given) = (group(params)?, None);
         for (name, quantity) in QUANTITIES {
@@ -91,7 +91,25 @@ impl EmissionDescription {
                 format!("give \"emission\", \"radiance\" or \"temperature\" too, or remove \"{name}\"");
             return Err(Error::new(params.location(), expected, "none", remedy));
         }
+        if let Some(given) = &given {
+            given.warn_if_dark(albedo, params);
+        }
         Ok(given.filter(|given| given.scale > 0.0))
+    }
+
+    /// Warns if it is in proportion to an absorption that is nowhere.
+    fn warn_if_dark(&self, albedo: &Volume, params: &Params<'_>) {
+        let absorbs = match albedo {
+            Volume::Constant(albedo) => albedo.eval::<Spectrum>(Vec3::ZERO).min_element() < 1.0,
+            _ => true,
+        };
+        if self.quantity != Quantity::Gain && !absorbs {
+            let name = self.name;
+            let text = format!(
+                "\"{name}\" has no effect: what does not absorb does not glow, and the albedo is 1. Lower the albedo, or give \"emission\""
+            );
+            params.library.warn(&self.location, &text);
+        }
     }
 
     /// True if it has no end: neither its volume ends, nor the matter that it depends on. Only matter that `varies`

@@ -3,7 +3,7 @@
 use super::sensors;
 use crate::{
     bsdf,
-    description::{Library, Object, Params, Table, params::Child, table},
+    description::{Library, Object, Params, Table, params::Child, substitutes, table},
     emitter,
     error::{Error, Result},
     format::{plugins, references, tags},
@@ -25,7 +25,6 @@ pub(super) struct Sections<'a> {
     /// Those beside the shapes, in file order.
     pub emitters: Vec<Child<'a>>,
     /// When it is seen (s): what drifts in a wind has drifted since 0.
-    #[allow(dead_code, reason = "read where volumes are built")]
     pub time: f64,
 }
 
@@ -126,8 +125,13 @@ fn misplaced(child: &Child<'_>) -> Error {
             format!("replace it by one of {}", sensor::ROWS.names().join(", ")),
         );
     }
-    let remedy = "move it into the object that it belongs to (films and samplers into the sensor)";
-    Error::new(child.location, "a plugin that belongs in the scene itself", format!("\"{plugin}\""), remedy)
+    let found = format!("\"{plugin}\", {}", plugins::kind(tags[0]));
+    let moved = "move it into the object that it belongs to (films and samplers into the sensor)";
+    let remedy = match substitutes::of_plugin(plugin, None) {
+        Some(instead) => format!("{instead}, or {moved}"),
+        None => moved.to_owned(),
+    };
+    Error::new(child.location, "a plugin that belongs in the scene itself", found, remedy)
 }
 
 /// Warns about definitions without effect, and checks them. Definitions that are referred to are built elsewhere.

@@ -45,7 +45,7 @@ OTHERS = {
 SEARCH = range(200, 202)
 """Seeds of the search: the best is then measured with others, or it would be the luckiest."""
 ATTEMPTS = 20
-"""Black scenes are drawn again so often."""
+"""Scenes that are black or have no noise are drawn again so often."""
 BEARABLE = 1.2
 """A default that surely costs more than this times the best is marked."""
 
@@ -107,7 +107,7 @@ def run(options: argparse.Namespace) -> bool:
 
 
 def ticket(seed: int, output: Path) -> tuple[Path, Drawn]:
-    """The first scene of this seed that is not black, and its file."""
+    """The first scene of this seed that is not black and has noise, and its file."""
     folder = output / f"{seed}"
     folder.mkdir(parents=True, exist_ok=True)
     for attempt in range(ATTEMPTS):
@@ -116,9 +116,9 @@ def ticket(seed: int, output: Path) -> tuple[Path, Drawn]:
         first = tyndall.run(path, spp=64, seed=1)
         for warning in first.messages:
             print(f"note: seed {seed}, attempt {attempt}: {warning}", flush=True)
-        if first.image.mean() > 0:
+        if first.image.mean() > 0 and first.report["relative_error"] > 0:
             return path, found
-    raise Failure(f"{ATTEMPTS} black scenes", "see whether the renderer finds no light in them, or there is none")
+    raise Failure(f"{ATTEMPTS} scenes that are black or have no noise", "see whether the renderer finds no light in them, or there is none")
 
 
 def judged(seed: int, options: argparse.Namespace) -> Row:

@@ -8,7 +8,7 @@ use super::{
         heading,
         parsers::{
             Frames, Samples, Size, VIEWER, address, batches, confidence, crop, duration, fps, frames,
-            image_file, positive_u32, relative_error, samples, size, threads,
+            image_file, positive_u32, relative_error, samples, seed, size, threads,
         },
         scene::Scene,
     },
@@ -183,7 +183,7 @@ pub struct Render {
     pub estimator: Estimator,
 
     /// Seed of all random numbers; the same seed gives the same image
-    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, help_heading = heading::STUDIES)]
+    #[arg(long, value_name = "N", value_parser = seed, default_value_t = 0, allow_negative_numbers = true, help_heading = heading::STUDIES)]
     pub seed: u64,
 
     /// Render N images with the seeds --seed, --seed + 1, ... and write their mean

@@ -1,7 +1,10 @@
 //! A JSON value with its place, and its conversion to the expected type.
 
 use super::{
-    super::text::{Parsed, triple},
+    super::{
+        plugins, steps, tags,
+        text::{Parsed, triple},
+    },
     Json,
 };
 use crate::{
@@ -127,7 +130,34 @@ impl<'j> Node<'j> {
 
     /// The `type` of an object.
     pub(super) fn type_name(&self) -> Result<&'j str> {
-        self.require("type")?.string()
+        self.get("type").ok_or_else(|| self.untyped())?.string()
+    }
+
+    /// The last key of its path.
+    fn name(&self) -> &str {
+        match &self.location.position {
+            Position::Path(path) => path.rsplit('.').next().unwrap_or_default(),
+            Position::Text { .. } => "",
+        }
+    }
+
+    /// The error for an object without a `type`. What it is meant to be stands in its only key or in its name.
+    fn untyped(&self) -> Error {
+        let only = match self.json {
+            Json::Object(entries) if entries.len() == 1 => entries[0].0.replace('_', "").to_lowercase(),
+            _ => String::new(),
+        };
+        let tag = tags::by_name(self.name());
+        let remedy = match plugins::plugins_of(tag).as_slice() {
+            _ if steps::WORDS.contains(&only.as_str()) => {
+                let step = format!("{{\"type\": \"{only}\", ...}}");
+                format!("write {}", if self.name().ends_with(']') { step } else { format!("[{step}]") })
+            }
+            [] => "add \"type\"".to_owned(),
+            [kind] => format!("add \"type\": \"{kind}\""),
+            known => format!("add \"type\", one of {}", known.join(", ")),
+        };
+        Error::new(&self.location, "an object with \"type\"", self.keys(), remedy)
     }
 
     /// Text, not empty.

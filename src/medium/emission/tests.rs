@@ -20,7 +20,9 @@ fn emission(parameters: &[(&str, Value)], within: Within) -> Result<Option<Emiss
     let object = object("homogeneous", parameters);
     let library = Library::default();
     let place = Place::new(DVec3::ZERO, 0.0);
-    let given = EmissionDescription::read(&crate::medium::ROWS.read(&object, &library)?.0, &place)?;
+    let params = crate::medium::ROWS.read(&object, &library)?.0;
+    let albedo = volume::parameter(&params, "albedo", &place)?;
+    let given = EmissionDescription::read(&params, &place, &albedo)?;
     given.map_or(Ok(None), |given| Emission::new(given, within, &AROUND))
 }
 

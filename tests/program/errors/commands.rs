@@ -1,4 +1,4 @@
-//! What is said of outputs that cannot be written: commands beside a scene.
+//! What is said of outputs that cannot be written, and of a few odd options: commands beside a scene.
 
 use crate::sandbox::Sandbox;
 use std::fmt::Write as _;
@@ -21,6 +21,8 @@ const COMMANDS: &[(&str, &str)] = &[
     ("a gathering of long paths", "render scene.json --integrator gather --min-depth 2"),
     ("a study inside a file", "study scene.json -o scene.json/s"),
     ("strategies in place of a file", "strategies scene.json -o scene.json"),
+    ("a conversion to an ending that nobody knows", "convert scene.json scene.yaml"),
+    ("half a seed", "render scene.json --seed 1.5"),
     ("a phase function drawn nowhere", "phase hg -o scene.json/drawn"),
 ];
 
