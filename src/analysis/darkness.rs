@@ -152,7 +152,7 @@ impl Look<'_> {
         let pixel = (stream.uniform() * self.film.len() as f32) as usize;
         let (position, _) = self.film.sample(pixel.min(self.film.len() - 1), &mut stream);
         let ray = scene.sensor.ray(position, scene.sensor.sample_aperture(&mut stream)).ray;
-        let mut segment = Segment::along(scene, ray, scene.media_map.sensor, false);
+        let mut segment = Segment::along(scene, ray, scene.sensor_medium(&ray), false);
         let End { depth, length, surface } = follow(scene, &mut segment);
         if depth > THICK {
             return Some((Cause::Thick, depth, length));

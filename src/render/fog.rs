@@ -140,7 +140,7 @@ impl<'a> Preview<'a> {
         let nothing = End::Radiance(Spectrum::ZERO);
         let mut sight =
             Sight { through: Spectrum::ONE, veiled: Spectrum::ZERO, emitted: Spectrum::ZERO, end: nothing };
-        let mut segment = Segment::along(self.scene, ray, self.scene.media_map.sensor, self.hide_emitters);
+        let mut segment = Segment::along(self.scene, ray, self.scene.sensor_medium(&ray), self.hide_emitters);
         let mut left = self.threshold;
         for _ in 0..MOST_LEGS {
             if let Some(end) = self.advance(&mut sight, &mut segment, &mut left, stream) {

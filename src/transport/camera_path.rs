@@ -73,7 +73,7 @@ pub(super) fn depart<P: Profile>(
     Departure {
         position,
         ray,
-        medium: estimator.scene.media_map.sensor,
+        medium: estimator.scene.sensor_medium(&ray),
         from_infinity: sensor.is_parallel(),
         edges: 0,
         hidden: estimator.hide_emitters,

@@ -65,7 +65,7 @@ pub(super) fn sample<P: Profile, R: Observer>(
 /// Factor per channel by which forcing raises the density of the first collision along the primary ray `ray`.
 pub(super) fn gain<P: Profile>(estimator: &Estimator<'_, P>, ray: Ray) -> P::Channels {
     let Estimator { scene, hide_emitters, .. } = *estimator;
-    gain_of(segment::sure_depth::<P>(Segment::along(scene, ray, scene.media_map.sensor, hide_emitters)))
+    gain_of(segment::sure_depth::<P>(Segment::along(scene, ray, scene.sensor_medium(&ray), hide_emitters)))
 }
 
 /// Largest gain: in thinner media the weights already leave nearly everything to camera subpaths.

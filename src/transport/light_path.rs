@@ -245,7 +245,7 @@ impl<'a, P: Profile, R: Observer> LightPath<'a, P, R> {
         let lens = End {
             origin: Some(ray.origin),
             lift: Lift::NONE,
-            medium: scene.media_map.sensor,
+            medium: scene.sensor_medium(&ray),
             within: false,
             value: Spectrum::splat(pdf * scene.sensor.response()),
             pdf_fwd: pdf,

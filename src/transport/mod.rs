@@ -222,7 +222,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
 
     /// Transmittance along a primary ray (its `t_max` is its length); 0 where a surface blocks it.
     pub fn transmittance(&self, primary: Ray, stream: &mut Stream) -> Spectrum {
-        let medium = self.scene.media_map.sensor;
+        let medium = self.scene.sensor_medium(&primary);
         let passed = transmittance::<P>(self.scene, primary, 0.0, medium, self.hide_emitters, stream);
         passed.map_or(Spectrum::ZERO, |passed| passed.transmittance)
     }
@@ -231,7 +231,7 @@ impl<'a, P: Profile> Estimator<'a, P> {
     /// none where it leaves the scene.
     #[cold]
     pub fn first_interaction(&self, primary: Ray, stream: &mut Stream) -> Option<Interaction> {
-        let medium = self.scene.media_map.sensor;
+        let medium = self.scene.sensor_medium(&primary);
         let ahead = Segment::along(self.scene, primary, medium, self.hide_emitters);
         sample_free_flight::<P>(ahead, 0, stream, &mut |_, _| ()).interaction
     }

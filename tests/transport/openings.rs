@@ -433,3 +433,59 @@ fn a_box_of_fog_in_a_room_does_not_reach_to_the_sky() {
         assert!(stage.setup.warnings.is_empty(), "{hole}: {:?}", stage.setup.warnings);
     }
 }
+
+/// A bright wall behind a box of fog that fills the right half of the view, and in which every ray of the right half starts.
+fn half_in_the_fog(sensor: &Value, albedo: f64) -> Stage {
+    let film = json!({"type": "hdrfilm", "width": 6, "height": 6, "rfilter": {"type": "box"}});
+    let wall = lamp_panel([0.0, 0.0, -3.0], 9.0, 1.0);
+    let wall = with(
+        wall,
+        &[("to_world", json!([{"type": "scale", "value": 9}, {"type": "translate", "value": [0, 0, -3]}]))],
+    );
+    Stage::new(&scene(&[
+        ("sensor", with(sensor.clone(), &[("film", film)])),
+        ("fog", null_box([0.0, -3.0, -2.0], [3.0, 3.0, 2.0], Some(medium(0.4, albedo, 0.0)))),
+        ("wall", wall),
+    ]))
+}
+
+/// By the sensor's one medium, the left half was as dark as the right one.
+#[test]
+fn rays_of_one_camera_start_in_several_media() {
+    let look = |z: f64| json!({"type": "lookat", "origin": [0, 0, z], "target": [0, 0, 0], "up": [0, 1, 0]});
+    let parallel = json!({"type": "orthographic", "near_clip": 0.5,
+        "to_world": [{"type": "scale", "value": [1.5, 1.5, 1]}, look(1.0)]});
+    let near = json!({"type": "perspective", "fov": 40, "near_clip": 3.5, "to_world": [look(4.0)]});
+    let lens = json!({"type": "thinlens", "fov": 40, "aperture_radius": 0.5, "focus_distance": 1.5, "to_world": [look(0.5)]});
+    let mut claims = Claims::new();
+    for (name, sensor) in [("parallel", &parallel), ("near plane", &near), ("lens", &lens)] {
+        let (dark, bright) = (half_in_the_fog(sensor, 0.0), half_in_the_fog(sensor, 0.8));
+        let said = &dark.setup.warnings;
+        assert!(
+            matches!(said.as_slice(), [one] if one.contains("start in several media")),
+            "{name}: {said:?}"
+        );
+        let renders = |stage: &Stage, set, first: u64| stage.renders(set, 64, first..first + 12);
+        let pt = renders(&dark, Strategies::PT, 0);
+        for (first, (method, set)) in (1000..).zip(METHODS) {
+            let [found, others] = [renders(&dark, set, 1000 * first), pt.clone()];
+            let of = |images: &[Vec<Spectrum>]| Sample::of(images, dark.width());
+            claims.equal(&format!("{name}, {method}"), &of(&found), &of(&others));
+            let left = |image: &Vec<Spectrum>| f64::from(image[6 * 2].x);
+            if sensor != &lens {
+                claims.mean(
+                    &format!("{name}, {method}, left"),
+                    &found.iter().map(left).collect::<Vec<_>>(),
+                    1.0,
+                );
+            }
+        }
+        let [pt, all] = [(Strategies::PT, 0), (Strategies::BDPT, 1000)]
+            .map(|(set, first)| Sample::of(&renders(&bright, set, first), bright.width()));
+        claims.equal(&format!("{name}, bdpt in white fog"), &all, &pt);
+    }
+    let absorbed = half_in_the_fog(&parallel, 0.0).renders(Strategies::BDPT, 64, 0..12);
+    let right: Vec<f64> = absorbed.iter().map(|image| f64::from(image[6 * 2 + 4].x)).collect();
+    claims.mean("parallel, right", &right, (-0.4f64 * 2.5).exp());
+    claims.settle();
+}

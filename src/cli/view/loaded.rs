@@ -12,7 +12,7 @@ use crate::{
     format::{self, Spelling},
     medium::MediumIndex,
     passes::{Settings, budget::Budget},
-    scene::build::Setup,
+    scene::{build::Setup, media::MediaMap},
     settings::options::Guiding,
 };
 use std::sync::Arc;
@@ -30,8 +30,8 @@ pub(super) struct Loaded {
     pub film: Film,
     /// The steps by which the scene places its camera; none of one that cannot be moved.
     pub placement: Option<Vec<TransformStep>>,
-    /// What that camera is in, as the scene states it or its boundaries say.
-    pub medium: MediumIndex,
+    /// What that camera is in, as the scene states it or its boundaries say; none where its rays start in several media.
+    pub medium: Option<MediumIndex>,
     /// Its camera; why it cannot be moved.
     pub home: std::result::Result<Camera, Error>,
 }
@@ -48,7 +48,8 @@ impl Loaded {
         }
         let placement = setup.placement().map(<[TransformStep]>::to_vec);
         let home = placement.clone().map(|steps| home(&setup, &steps));
-        let (film, medium) = (setup.film.clone(), setup.scene.media_map.sensor);
+        let MediaMap { sensor, sensor_straddles, .. } = setup.scene.media_map;
+        let (film, medium) = (setup.film.clone(), (!sensor_straddles).then_some(sensor));
         Ok(Self { setup, settings, film, placement: placement.ok(), medium, home })
     }
 

@@ -217,8 +217,10 @@ impl<'a> Painter<'a> {
     fn look(&mut self, film: Film) -> Result<()> {
         let Some(camera) = &self.camera else { return Ok(()) };
         self.loaded.setup.look(&camera.steps(), film)?;
-        if self.loaded.home.as_ref().is_ok_and(|home| camera.is_at(home)) {
-            self.loaded.setup.enter(self.loaded.medium);
+        if let Some(medium) = self.loaded.medium
+            && self.loaded.home.as_ref().is_ok_and(|home| camera.is_at(home))
+        {
+            self.loaded.setup.enter(medium);
         }
         Ok(())
     }

@@ -73,7 +73,7 @@ impl Sight {
     pub(super) fn of(scene: &Scene, film: Vec2, hide_emitters: bool) -> Self {
         let ray = scene.sensor.ray(film, Vec2::ZERO).ray;
         let mut stream = Stream::new(0, 0, 0, Purpose::Pilot);
-        let mut segment = Segment::along(scene, ray, scene.media_map.sensor, hide_emitters);
+        let mut segment = Segment::along(scene, ray, scene.sensor_medium(&ray), hide_emitters);
         let (mut seen, mut veil) = (Self::NOTHING, Veil::default());
         let mut through = Spectrum::ONE;
         for _ in 0..MOST_LEGS {

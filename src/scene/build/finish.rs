@@ -10,7 +10,6 @@ use crate::scene::{
     unseen::Unseen,
 };
 use crate::{
-    description::Location,
     emitter::Kind,
     error::Result,
     math::{DVec3, Vec3},
@@ -42,10 +41,7 @@ impl Builder<'_> {
         camera.sensor.settle(geometry.shapes());
         let stated = self.surfaces.clone();
         let (geometry, surveyed) = self.survey(geometry, &mut camera)?;
-        let Surveyed { known, survey, sensor_medium, overlaps, contradicts } = surveyed;
-        if let Some(shape) = camera.sensor.shape() {
-            self.warn_of_media_before(shape, &geometry, &known, sensor_medium, camera.location);
-        }
+        let Surveyed { known, survey, sensor_medium, sensor_media, overlaps, contradicts } = surveyed;
         let outside = known.infinity.most();
         let sky = self.emitters.iter().find(|placed| placed.emitter.is_infinite());
         self.names().warn_of_endless(outside, &self.media, sky.map(|placed| placed.location));
@@ -61,10 +57,13 @@ impl Builder<'_> {
         });
         let (surfaces, bsdfs, viewpoint) = (&self.surfaces, &self.bsdfs, camera.start);
         let unseen = Unseen { geometry: &geometry, surfaces, bsdfs, lights: &lights, viewpoint };
+        let around = [MediumIndex::VACUUM, outside, sensor_medium];
+        let open: Vec<MediumIndex> = around.into_iter().chain(sensor_media.iter().copied()).collect();
         let shut_in = match overlaps.is_some() || contradicts {
             true => vec![false; media.len()],
-            false => unseen.shut_in(&media, &[MediumIndex::VACUUM, outside, sensor_medium]),
+            false => unseen.shut_in(&media, &open),
         };
+        let sensor_straddles = sensor_media.len() > 1;
         // Parallel rays start all over a plane: in a shape here, out of it there.
         if !camera.sensor.is_parallel() {
             unseen.warn(&self.names(), camera.location);
@@ -80,29 +79,20 @@ impl Builder<'_> {
             lights,
             sensor,
             crop,
-            media_map: MediaMap { outside, sensor: sensor_medium, known, overlaps, nowhere, shut_in },
+            media_map: MediaMap {
+                outside,
+                sensor: sensor_medium,
+                sensor_straddles,
+                known,
+                overlaps,
+                nowhere,
+                shut_in,
+            },
             recentre,
             softened: self.library.soften,
             moves: false,
         };
         Ok(Finished { scene, shape_names, bsdf_names, apart })
-    }
-
-    /// An irradiancemeter on `shape` is in one medium.
-    fn warn_of_media_before(
-        &self,
-        shape: u32,
-        geometry: &Geometry,
-        known: &Known,
-        ambient: MediumIndex,
-        location: &Location,
-    ) {
-        let locator = Locator { geometry, surfaces: &self.surfaces, known };
-        if (Placement { locator, names: &self.names(), ambient }).straddles(shape) {
-            let text = "this shape has different media before it. All of its rays start in the medium before its middle; \
-                        measure on several shapes, each before one medium";
-            self.library.warn(location, text);
-        }
     }
 
     /// All emitters, emissive media among them, with the medium that each lies in.

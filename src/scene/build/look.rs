@@ -8,6 +8,7 @@ use crate::{
     math::{DVec3, Vec2, Vec3, offset::ROUNDOFF, vec2},
     medium::MediumIndex,
     scene::{
+        media::media_before,
         memo::Memo,
         sensors::{sensors, without_sensor},
     },
@@ -60,16 +61,21 @@ impl Setup {
         let sensor = build(&params, &Site { recentre: self.scene.recentre, crop, shapes, places })?;
         let start = sensor.ray(middle(&film), Vec2::ZERO).ray.origin;
         let medium = self.scene.medium_at(start).unwrap_or(self.scene.media_map.outside);
+        let overlaps = self.scene.media_map.overlaps.as_deref();
+        let size = Vec2::from(film.window.size.map(|pixels| pixels as f32));
+        let media = media_before(&self.scene.locator(), overlaps, &sensor, size);
         (self.scene.sensor, self.scene.crop, self.film) = (sensor, crop, film);
         // What was learnt from another viewpoint does not apply here.
         (self.scene.lights.learnt, self.scene.lights.endings) = (Memo::default(), Memo::default());
         self.enter(medium);
+        self.scene.media_map.sensor_straddles = media.len() > 1;
+        media.iter().for_each(|medium| self.scene.media_map.shut_in[medium.0 as usize] = false);
         Ok(())
     }
 
     /// Puts the camera into `medium`, which then no longer counts as shut in.
     pub fn enter(&mut self, medium: MediumIndex) {
-        self.scene.media_map.sensor = medium;
+        (self.scene.media_map.sensor, self.scene.media_map.sensor_straddles) = (medium, false);
         self.scene.media_map.shut_in[medium.0 as usize] = false;
     }
 

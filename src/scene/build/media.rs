@@ -10,7 +10,7 @@ use crate::{
         Surface,
         accel::Geometry,
         contact::{Nature, Rank},
-        media::{Boundary, Known, Overlaps, Survey, open, place_camera},
+        media::{Boundary, Known, Locator, Overlaps, Survey, media_before, open, place_camera},
     },
 };
 use std::collections::BTreeSet;
@@ -20,6 +20,8 @@ pub(super) struct Surveyed {
     pub known: Known,
     pub survey: Survey,
     pub sensor_medium: MediumIndex,
+    /// All that are seen where rays of a camera start that states none.
+    pub sensor_media: BTreeSet<MediumIndex>,
     pub overlaps: Option<Box<Overlaps>>,
     /// Boundaries contradict each other even after that.
     pub contradicts: bool,
@@ -51,12 +53,23 @@ impl Builder<'_> {
         let contradicts = !contradictions.shapes().is_empty();
         overlaps.find_regions(self.media.len(), &self.bases(camera));
         // The pinhole itself may lie on a boundary, and what is before the near plane is not seen.
-        let Camera { start, stated, location, .. } = *camera;
-        let names = self.names();
-        let place = || place_camera(&geometry, &self.surfaces, &mut known, start, &names, location);
+        let Camera { start, size, stated, location, .. } = *camera;
+        let (names, surfaces) = (self.names(), &self.surfaces);
+        let overlapping = (!overlaps.is_empty()).then_some(&overlaps);
+        let locator = Locator { geometry: &geometry, surfaces, known: &known };
+        let sensor_media = match stated {
+            Some(_) => BTreeSet::new(),
+            None => media_before(&locator, overlapping, &camera.sensor, size),
+        };
+        let across = (sensor_media.len() > 1).then(|| {
+            names.warn_of_camera_across(&sensor_media, location);
+            locator.along(start, Vec3::X).unwrap_or(MediumIndex::VACUUM)
+        });
+        let alone = || place_camera(&geometry, surfaces, &mut known, start, &names, location);
+        let place = || across.unwrap_or_else(alone);
         let sensor_medium = overlaps.at(stated.unwrap_or_else(place), start, Vec3::X);
         let overlaps = (!overlaps.is_empty()).then(|| Box::new(overlaps));
-        Ok((geometry, Surveyed { known, survey, sensor_medium, overlaps, contradicts }))
+        Ok((geometry, Surveyed { known, survey, sensor_medium, sensor_media, overlaps, contradicts }))
     }
 
     /// What is known without the overlapping boundaries, and the contradictions that remain.

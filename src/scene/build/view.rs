@@ -28,6 +28,8 @@ pub(super) struct Camera<'a> {
     pub(super) crop: Crop,
     /// Where the ray through the middle of the image starts: on the near plane.
     pub(super) start: Vec3,
+    /// Width and height of the image (pixels).
+    pub(super) size: Vec2,
     /// The medium that the file says it is in.
     pub(super) stated: Option<MediumIndex>,
     pub(super) location: &'a Location,
@@ -59,10 +61,10 @@ impl<'a> Builder<'a> {
         let sensor = build(&params, &Site { recentre: self.recentre, crop, shapes, places })?;
         shutter::check(&params)?;
         params.finish()?;
-        let middle = film.window.size.map(|pixels| 0.5 * pixels as f32);
-        let start = sensor.ray(middle.into(), Vec2::ZERO).ray.origin;
+        let size = Vec2::from(film.window.size.map(|pixels| pixels as f32));
+        let start = sensor.ray(0.5 * size, Vec2::ZERO).ray.origin;
         Ok(View {
-            camera: Camera { sensor, crop, start, stated, location: &object.location },
+            camera: Camera { sensor, crop, start, size, stated, location: &object.location },
             film,
             sampling,
         })

@@ -20,7 +20,7 @@ pub use locate::Infinity;
 pub(super) use locate::{Known, Locator, Survey};
 pub use overlap::Overlaps;
 pub(super) use overlap::{lies_in, open};
-pub(super) use placement::{Names, Placement, place_camera};
+pub(super) use placement::{Names, Placement, media_before, place_camera};
 pub(super) use range::check;
 pub(super) use solid::Solid;
 
@@ -32,7 +32,7 @@ use crate::{
     emitter::Kind,
     math::{Spectrum, Vec3},
     medium::MediumIndex,
-    shape::SurfacePoint,
+    shape::{Ray, SurfacePoint},
 };
 
 /// What is known about where media lie.
@@ -41,6 +41,8 @@ pub struct MediaMap {
     pub outside: MediumIndex,
     /// The medium around the camera.
     pub sensor: MediumIndex,
+    /// Rays of the camera start in several media. That of each is located, and `sensor` is where nothing is known.
+    pub sensor_straddles: bool,
     /// What was found out beforehand.
     pub known: Known,
     /// What lies where boundaries of media overlap; none where none do.
@@ -153,6 +155,20 @@ impl Scene {
 
     pub(super) fn locator(&self) -> Locator<'_> {
         Locator { geometry: &self.geometry, surfaces: &self.surfaces, known: &self.media_map.known }
+    }
+
+    /// The medium that `ray` from the camera starts in.
+    #[inline]
+    pub fn sensor_medium(&self, ray: &Ray) -> MediumIndex {
+        if self.media_map.sensor_straddles { self.located(ray) } else { self.media_map.sensor }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn located(&self, Ray { origin, direction, .. }: &Ray) -> MediumIndex {
+        let found = self.locator().along(*origin, *direction).unwrap_or(self.media_map.sensor);
+        let overlaps = self.media_map.overlaps.as_ref();
+        overlaps.map_or(found, |overlaps| overlaps.at(found, *origin, *direction))
     }
 
     /// The medium that light of an emitter is in when it leaves from `origin` in `direction`.

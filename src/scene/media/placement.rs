@@ -3,20 +3,24 @@
 use super::{
     boundary::Boundary,
     locate::{Certainty, Contradiction, Known, Located, Locator, Survey},
+    overlap::Overlaps,
 };
 use crate::{
     description::{Library, Location, Position},
     emitter::{Emitter, InfiniteModel, Kind},
-    math::{DVec3, Vec3},
+    math::{DVec3, Vec2, Vec3},
     medium::{MediumDescription, MediumIndex},
     sampling::{Stream, stream::Purpose},
     scene::{accel::Geometry, contact::Contact, lights::Disk, surface::Surface},
+    sensor::Sensor,
     shape::SurfacePoint,
 };
 use std::collections::BTreeSet;
 
 /// Points of an emitting shape that are located.
 const POINTS: u32 = 64;
+/// Rays of a camera whose starts are located: as many as find a medium that a fiftieth of them start in.
+const RAYS: u32 = 256;
 
 /// What messages call things by.
 pub(crate) struct Names<'a> {
@@ -162,6 +166,17 @@ impl Names<'_> {
         self.library.warn(location, &text);
     }
 
+    /// The rays of a camera that states no medium start in several `media`.
+    pub(crate) fn warn_of_camera_across(&self, media: &BTreeSet<MediumIndex>, location: &Location) {
+        let names: Vec<String> = media.iter().map(|medium| self.medium(*medium)).collect();
+        let text = format!(
+            "rays of the camera start in several media ({}): each in the one around its start. Mitsuba would start all of \
+             them in the medium that the camera states, or in vacuum",
+            names.join(", ")
+        );
+        self.library.warn(location, &text);
+    }
+
     /// Of the medium around everything, light has to end somewhere, and none comes in from infinity.
     pub(crate) fn warn_of_endless(
         &self,
@@ -223,6 +238,27 @@ pub(crate) fn place_camera(
     located.medium
 }
 
+/// The media that rays of `sensor` start in, as far as they are seen, where its film is so large (pixels).
+pub(crate) fn media_before(
+    locator: &Locator<'_>,
+    overlaps: Option<&Overlaps>,
+    sensor: &Sensor,
+    size: Vec2,
+) -> BTreeSet<MediumIndex> {
+    if locator.known.is_uniform() && overlaps.is_none() {
+        return BTreeSet::new();
+    }
+    let mut stream = Stream::new(8, 0, 0, Purpose::Pilot);
+    let start = |_| {
+        let film = size * stream.square();
+        let start = sensor.ray(film, sensor.sample_aperture(&mut stream)).ray.origin;
+        let Located { medium, certainty } = locator.locate(start, &mut stream)?;
+        let is_seen = matches!(certainty, Certainty::Seen | Certainty::Unstated);
+        is_seen.then(|| overlaps.map_or(medium, |overlaps| overlaps.at(medium, start, Vec3::X)))
+    };
+    (0..RAYS).filter_map(start).collect()
+}
+
 impl Placement<'_> {
     fn assumed(&self) -> Located {
         Located { medium: self.ambient, certainty: Certainty::Assumed }
@@ -239,13 +275,6 @@ impl Placement<'_> {
     /// The medium on the emitting side of a shape, and whether light of different points starts in different ones.
     pub(crate) fn of_shape(&self, shape: u32, location: &Location) -> (MediumIndex, bool) {
         self.of_points(self.before(shape), self.is_stated(shape), "an emitting shape", location)
-    }
-
-    /// True if different points of a shape have different media before them.
-    pub(crate) fn straddles(&self, shape: u32) -> bool {
-        let mut media = self.before(shape).map(|located| located.medium);
-        let first = media.next();
-        !self.locator.known.is_uniform() && media.any(|medium| Some(medium) != first)
     }
 
     /// What lies before points of a shape.
