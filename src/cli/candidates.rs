@@ -31,7 +31,7 @@ pub(super) fn table(report: &Report) -> String {
         "            It is time x error, with the same allowance for rare bright paths in all.".to_owned(),
     );
     lines.push(format!(
-        "            Longer walks beside light subpaths, and equiangular sampling, must be {WORTHWHILE} times better, learnt starts {LEARNT} times."
+        "            Longer walks beside light subpaths, equiangular sampling and aimed starts must be {WORTHWHILE} times better, learnt starts {LEARNT} times."
     ));
     lines.push(format!(
         "            A guide beside light subpaths has a pilot of its own and must be {GUIDED} times better."

@@ -11,7 +11,7 @@ use crate::{
     analysis::guide::{self, Cells, FILES, Portal, Report},
     error::{Error, Result},
     passes::budget::Budget,
-    transport,
+    transport::{self, LightStarts},
 };
 use clap::Args;
 use std::{num::NonZeroUsize, path::PathBuf};
@@ -60,8 +60,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     }
     let transport::Options { strategies, effort, .. } = &mut settings.options;
     // As renders learn them.
-    let starts = arguments.estimator.starts.unwrap_or(strategies.need_light_walks());
-    effort.learnt_starts = starts && strategies.use_starts(&setup.scene, effort.sky);
+    let usual = || if strategies.need_light_walks() { LightStarts::Learnt } else { LightStarts::Emitted };
+    let starts = arguments.estimator.starts.unwrap_or_else(usual);
+    effort.starts =
+        if strategies.use_starts(&setup.scene, effort.sky) { starts } else { LightStarts::Emitted };
     let folder = outputs::folder(arguments.output.as_ref(), &arguments.scene, "guide")?;
     outputs::check_short(&FILES.map(|name| folder.join(name)))?;
     let findings = scene::threads(arguments.threads)?

@@ -9,7 +9,7 @@ use crate::{
     render::progressive::Progressive,
     scene::build::Setup,
     transport::coverage::{self, Share, Unreached, list},
-    transport::{Algorithm, Connections, Effort, Options, Sky, Survival},
+    transport::{Algorithm, Connections, Effort, LightStarts, Options, Sky, Survival},
 };
 use serde_json::{Value, json};
 use std::path::Path;
@@ -178,7 +178,7 @@ impl Plan {
                 Connections::Cached => Value::from(effort.connections),
                 Connections::All => "all".into(),
             },
-            "learnt_starts": effort.learnt_starts,
+            "starts": effort.starts.name(),
             "sky": if effort.sky == Sky::Hit { "hit" } else { "next-event" },
             "guided": effort.is_guided(),
             "time_of_all_strategies": self.chosen.map(|choice| choice.gain),
@@ -234,12 +234,12 @@ fn in_words(method: DistanceMethod) -> &'static str {
 
 /// What is out of the common in `effort`.
 pub(super) fn efforts(effort: Effort) -> Vec<String> {
-    let Effort { survival, light_walks, connections, learnt_starts, sky, .. } = effort;
+    let Effort { survival, light_walks, connections, starts, sky, .. } = effort;
     let parts = [
         (connections != 1, format!("{connections} connections a vertex")),
         (light_walks != 1.0, format!("{light_walks} light subpaths a sample")),
         (sky == Sky::Hit, "the sky by hits".to_owned()),
-        (learnt_starts, "learnt starts".to_owned()),
+        (starts != LightStarts::Emitted, format!("{} starts", starts.name())),
         (effort.is_guided(), "guided walks".to_owned()),
         (survival == Survival::FourthRoot, "longer walks".to_owned()),
     ];

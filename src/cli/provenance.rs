@@ -12,7 +12,7 @@ use crate::{
     render::{Image, Precision},
     sampling::Basis,
     scene::build::Setup,
-    transport::{Connections, Options, Sky},
+    transport::{Connections, Effort, LightStarts, Options, Sky},
 };
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -87,8 +87,8 @@ fn extend(settings: &mut Value, setup: &Setup, options: &Options, film_samples: 
         settings["preview"] = options.algorithm.name().into();
         settings["first_pass"] = options.first_pass.by(options.algorithm).name().into();
     }
-    if options.effort.learnt_starts && settings["chosen_by_pilot"].is_null() {
-        settings["learnt_starts"] = true.into();
+    if let Some(name) = starts(options.effort).filter(|_| settings["chosen_by_pilot"].is_null()) {
+        settings[name] = true.into();
     }
     if options.effort.sky == Sky::Hit && settings["chosen_by_pilot"].is_null() {
         settings["sky"] = "hit".into();
@@ -101,7 +101,16 @@ fn extend(settings: &mut Value, setup: &Setup, options: &Options, film_samples: 
     }
 }
 
-/// What a pilot chose; learnt starts are named where there are any, so that earlier sums without them can go on.
+/// What says that light subpaths start elsewhere than emitters emit.
+fn starts(effort: Effort) -> Option<&'static str> {
+    match effort.starts {
+        LightStarts::Emitted => None,
+        LightStarts::Aimed => Some("aimed_starts"),
+        LightStarts::Learnt => Some("learnt_starts"),
+    }
+}
+
+/// What a pilot chose; other starts are named where there are any, so that earlier sums without them can go on.
 pub(super) fn by_pilot(Choice { strategies, effort, .. }: Choice) -> Value {
     let mut chosen = json!({
         "strategies": strategies.names(),
@@ -109,8 +118,8 @@ pub(super) fn by_pilot(Choice { strategies, effort, .. }: Choice) -> Value {
         "light_walks": effort.light_walks,
         "connections": effort.connections,
     });
-    if effort.learnt_starts {
-        chosen["learnt_starts"] = true.into();
+    if let Some(name) = starts(effort) {
+        chosen[name] = true.into();
     }
     if effort.sky == Sky::Hit {
         chosen["sky"] = "hit".into();
@@ -180,7 +189,7 @@ pub(super) fn without_window(made: &Value) -> Value {
 /// differ in these are of the same image. `validation/cluster/tiles.py` has the same list.
 fn of_image(settings: &Value) -> Value {
     let mut settings = settings.clone();
-    for chosen in ["chosen_by_pilot", "guide", "basis", "learnt_starts", "sky"] {
+    for chosen in ["chosen_by_pilot", "guide", "basis", "aimed_starts", "learnt_starts", "sky"] {
         settings[chosen].take();
     }
     settings

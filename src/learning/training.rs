@@ -27,7 +27,7 @@ use crate::{
     },
     sampling::{Basis, Sampler},
     scene::{Scene, lights::Starts},
-    settings::options::{Effort, FirstPass, Guiding},
+    settings::options::{Effort, FirstPass, Guiding, LightStarts},
     transport::{Algorithm, Connections, Heuristic, Options, Strategies, profiles::ProfileName},
 };
 use std::sync::Arc;
@@ -105,13 +105,17 @@ pub fn learn_until(
 pub fn learn_rounds(scene: &Scene, film: &Film, settings: &Settings, rounds: usize) -> Learnt {
     let Options { algorithm, effort, max_depth, first_pass, flat, .. } = settings.options;
     let wanted = Wanted::by(settings.options, follows_guide(scene, film, settings));
-    let after = |rounds| match wanted {
-        Wanted { starts: None, guide: None, .. } => Learnt::default(),
-        _ => {
-            let training = &mut Training::recall(scene, film, wanted);
-            let learnt = training.go_on(rounds, &|| false).unwrap_or_default();
-            Learnt { starts: learnt.starts.filter(|_| effort.learnt_starts), ..learnt }
-        }
+    let after = |rounds| {
+        let learnt = match wanted {
+            Wanted { starts: None, guide: None, .. } => Learnt::default(),
+            _ => Training::recall(scene, film, wanted).go_on(rounds, &|| false).unwrap_or_default(),
+        };
+        let starts = match effort.starts {
+            LightStarts::Emitted => None,
+            LightStarts::Aimed => scene.aimed_starts(),
+            LightStarts::Learnt => learnt.starts,
+        };
+        Learnt { starts, ..learnt }
     };
     let first = after(ROUNDS);
     let learnt = if rounds > ROUNDS { after(rounds) } else { first.clone() };
@@ -174,7 +178,7 @@ impl Wanted {
             // Camera subpaths that never hit an emitter share nothing with light subpaths. A guide of both kinds of
             // walks is always learnt with starts, so that a pilot that tries starts shares it with its choice. A guide
             // of camera subpaths alone is better learnt without.
-            starts: (effort.learnt_starts || guided && strategies.need_light_walks())
+            starts: (effort.starts == LightStarts::Learnt || guided && strategies.need_light_walks())
                 .then_some(strategies.emitter_hit),
             // What a pilot leaves out later changes nothing.
             guide: guided.then_some(if strategies.need_light_walks() {
@@ -334,7 +338,11 @@ impl<'a> Training<'a> {
         let tasks = known.tasks..known.tasks + blocks_for(film.len(), subpaths);
         let end = tasks.end;
         let settings = of_learning(wanted.options);
-        let followed = known.latest.clone();
+        let mut followed = known.latest.clone();
+        if wanted.starts.is_some() && known.learnt.is_empty() {
+            // Where light hardly meets what focuses it, there would be nothing to learn from.
+            followed.starts = scene.aimed_starts();
+        }
         let compiled = compiled::by_kind(scene, film, &settings, followed, PIXELS_PER_BLOCK);
         let trial = Trial::run(&*compiled, tasks, wanted.guide.is_some(), is_over);
         let Some(trial) = trial else { return false };

@@ -367,7 +367,7 @@ mod tests {
             let read = format::read(&path, &[("medium".to_owned(), fog.to_owned())]).unwrap();
             let overrides = Overrides { size: Some((16, 16)), ..Overrides::default() };
             let Setup { scene, film, integrator, .. } = build::build(&read, overrides).unwrap();
-            let effort = Effort { guide: Guiding::Always, learnt_starts: false, ..Effort::default() };
+            let effort = Effort { guide: Guiding::Always, ..Effort::default() };
             let options = Options { strategies: Strategies::BDPT, effort, ..integrator.options };
             let settings = training::of_learning(training::options_of_learning(options));
             let learnt = training::learn_rounds(&scene, &film, &Settings { options, ..settings }, 6);

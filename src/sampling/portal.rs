@@ -103,6 +103,20 @@ impl Aimed {
         Self(fitted).bounded(most)
     }
 
+    /// Shares in proportion to the number behind each portal; none where that is 0.
+    pub fn shared(portals: impl Iterator<Item = (Portal, f32)>) -> Self {
+        let kept = portals.filter(|(_, part)| *part > 0.0).map(|(portal, part)| (part, portal));
+        let mut aimed = Self(kept.collect());
+        let all = aimed.share();
+        aimed.0.iter_mut().for_each(|(share, _)| *share /= all);
+        aimed.bounded(MOST_AIMED)
+    }
+
+    /// All rays aim at one portal.
+    pub fn all_at(portal: Portal) -> Self {
+        Self(vec![(1.0, portal)])
+    }
+
     /// The shares by expectation maximisation, for passages with such densities by portal and sphere.
     fn refitted(self, known: &[(Passage, Vec<[f32; SPHERES]>)]) -> Self {
         (0..FITS).fold(self, |aimed, _| aimed.refitted_once(known))
@@ -212,6 +226,11 @@ impl Portal {
         let known = |passage: &Passage| (Passage { unaimed: 0.0, ..*passage }, vec![even.of(passage)]);
         let known: Vec<_> = through.map(known).collect();
         Aimed(vec![(1.0, even)]).refitted(&known).0[0].1.ample()
+    }
+
+    /// Most of what aims at it aims at `smallest`.
+    pub fn around(smallest: Sphere) -> Self {
+        Self { smallest, shares: [1.0, 0.0, 0.0, 0.0] }.ample()
     }
 
     fn even(smallest: Sphere) -> Self {

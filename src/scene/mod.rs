@@ -14,6 +14,7 @@ pub mod sensors;
 pub mod shutter;
 pub mod smoke;
 mod surface;
+mod targets;
 #[cfg(test)]
 mod tests;
 mod time;

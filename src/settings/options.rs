@@ -220,6 +220,30 @@ impl Guiding {
         [("never", Self::Never), ("auto", Self::Auto), ("always", Self::Always)];
 }
 
+/// Where light subpaths start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LightStarts {
+    /// As emitters emit.
+    #[default]
+    Emitted,
+    /// A part of them aims at shapes that bend light and at media.
+    Aimed,
+    /// Where training found that light reaches the image. Next-event estimation aims at the environment through the
+    /// same openings.
+    Learnt,
+}
+
+impl LightStarts {
+    /// Each as typed.
+    pub const NAMES: [(&'static str, Self); 3] =
+        [("emitted", Self::Emitted), ("aimed", Self::Aimed), ("learnt", Self::Learnt)];
+
+    /// As typed.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize].0
+    }
+}
+
 /// How many samples the strategies take, for each pixel sample, and how long walks are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
@@ -229,9 +253,8 @@ pub struct Effort {
     pub light_walks: f32,
     /// Connections from each vertex of the camera subpath to vertices of light subpaths, above 0.
     pub connections: u32,
-    /// Light subpaths start where training found that light reaches the image, and next-event estimation aims at the
-    /// environment through the same openings.
-    pub learnt_starts: bool,
+    /// Where light subpaths start.
+    pub starts: LightStarts,
     /// How the environment is found.
     pub sky: Sky,
     /// When walks follow a guide, which is learnt.
@@ -244,7 +267,7 @@ impl Effort {
         survival: Survival::Albedo,
         light_walks: 1.0,
         connections: 1,
-        learnt_starts: false,
+        starts: LightStarts::Emitted,
         sky: Sky::NextEvent,
         guide: Guiding::Never,
     };

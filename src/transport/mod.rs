@@ -105,7 +105,7 @@ pub use vertex::Vertex;
 pub use crate::{
     settings::heuristic::Heuristic,
     settings::options::{
-        Algorithm, Connections, Effort, FirstPass, Guiding, Options, Sky, Strategies, Survival,
+        Algorithm, Connections, Effort, FirstPass, Guiding, LightStarts, Options, Sky, Strategies, Survival,
     },
 };
 

@@ -12,7 +12,7 @@ use tyndall::{
     math::Spectrum,
     render::instrument::Instrument,
     scene::lights::EmissionSample,
-    transport::Strategies,
+    transport::{LightStarts, Strategies},
 };
 
 const SIZE: u32 = 40;
@@ -144,7 +144,7 @@ fn a_sample_made_again_is_what_its_pass_adds() {
 #[test]
 fn densities_of_starts_are_those_of_learnt_starts() {
     let mut stage = Stage::new(&foggy_room(Some(medium(1.0, 0.8, 0.3)), "box"));
-    stage.setup.integrator.options.effort.learnt_starts = true;
+    stage.setup.integrator.options.effort.starts = LightStarts::Learnt;
     let settings = stage.settings(Strategies::BDPT, 1, 3);
     let instrument = Instrument::new(&stage.setup.scene, &stage.setup.film, &settings);
     let samples: Vec<PixelSample> =

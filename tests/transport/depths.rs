@@ -11,7 +11,7 @@ use crate::common::{
 use serde_json::{Value, json};
 use tyndall::{
     math::Spectrum,
-    transport::{Connections, Guiding, Strategies},
+    transport::{Connections, Guiding, LightStarts, Strategies},
 };
 
 const SEEDS: u64 = 12;
@@ -98,7 +98,7 @@ fn all_strategies_agree_on_long_paths() {
         }
         let mut guided = of_lengths(&scene, 3, DEEPEST, &[]);
         guided.setup.integrator.options.effort.guide = Guiding::Always;
-        guided.setup.integrator.options.effort.learnt_starts = true;
+        guided.setup.integrator.options.effort.starts = LightStarts::Learnt;
         claims.equal(&format!("{name}: guided"), &sample(&guided, Strategies::BDPT, 4000), &all);
         let mut paired = of_lengths(&scene, 3, DEEPEST, &[]);
         paired.setup.integrator.options.connections = Connections::All;

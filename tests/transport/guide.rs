@@ -6,7 +6,7 @@ use crate::common::{
     pieces::*,
 };
 use serde_json::{Value, json};
-use tyndall::transport::{Effort, Guiding, Strategies};
+use tyndall::transport::{Effort, Guiding, LightStarts, Strategies};
 
 /// Light comes round a wall, to plastic and fog.
 fn divided_room(fog: Option<Value>) -> Value {
@@ -49,7 +49,7 @@ fn guided_walks_show_the_same() {
             let first = 10_000 * index as u64;
             let usual = measure(strategies, Effort::default(), first);
             claims.equal(&format!("{name}, {kind}"), &measure(strategies, guided, first + 1000), &usual);
-            let both = Effort { learnt_starts: true, connections: 2, ..guided };
+            let both = Effort { starts: LightStarts::Learnt, connections: 2, ..guided };
             claims.equal(&format!("{name}, {kind}, both"), &measure(strategies, both, first + 2000), &usual);
         }
     }

@@ -12,7 +12,7 @@ use tyndall::{
     passes::{Settings, budget::Budget},
     render::{self, Precision},
     settings::options::Guiding,
-    transport::{Effort, Strategies},
+    transport::{Effort, LightStarts, Strategies},
 };
 
 fn keyed(first: Value, last: Value) -> Value {
@@ -65,7 +65,7 @@ static STILL: LazyLock<Sample> = LazyLock::new(|| {
 fn the_image_is_the_mean_over_the_exposure() {
     let mut claims = Claims::new();
     let mut stage = Stage::new(&scene_open(0.0, 1.0));
-    let learnt = Effort { learnt_starts: true, ..Effort::default() };
+    let learnt = Effort { starts: LightStarts::Learnt, ..Effort::default() };
     let guided = Effort { guide: Guiding::Always, ..learnt };
     let all = [
         ("pt", Strategies::PT, Effort::default()),

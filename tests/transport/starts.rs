@@ -6,7 +6,7 @@ use crate::common::{
     pieces::*,
 };
 use serde_json::{Value, json};
-use tyndall::transport::{Effort, Sky, Strategies};
+use tyndall::transport::{Effort, LightStarts, Sky, Strategies};
 
 fn panel(emitter: Value) -> Value {
     with(lamp_panel([0.1, 0.85, -0.2], 0.25, 1.0), &[("emitter", emitter)])
@@ -62,7 +62,7 @@ fn a_sky_that_is_hit_only_shows_the_same() {
     let hit = Effort { sky: Sky::Hit, ..Effort::default() };
     claims.equal("pt", &measure(Strategies::PT, hit, 1000), &usual);
     claims.equal("bdpt", &measure(Strategies::BDPT, hit, 2000), &usual);
-    let learnt = Effort { learnt_starts: true, light_walks: 2.0, connections: 2, ..hit };
+    let learnt = Effort { starts: LightStarts::Learnt, light_walks: 2.0, connections: 2, ..hit };
     claims.equal("bdpt, learnt", &measure(Strategies::BDPT, learnt, 3000), &usual);
     claims.settle();
 }
@@ -79,10 +79,31 @@ fn fire() -> Value {
     ])
 }
 
+/// The same scenes with glass that light subpaths may aim at, and the smoke.
+#[test]
+fn aimed_starts_show_the_same() {
+    let glass = json!({"type": "sphere", "center": [0.35, -0.1, 0.3], "radius": 0.15,
+        "bsdf": {"type": "roughdielectric", "alpha": 0.2}});
+    let mut claims = Claims::new();
+    for (name, scene) in [("lamps", lamps()), ("outdoors", outdoors()), ("fire", fire())] {
+        let mut stage = Stage::new(&with(scene, &[("glass", glass.clone())]));
+        let mut measure = |strategies: Strategies, starts: LightStarts, first: u64| {
+            stage.setup.integrator.options.effort = Effort { starts, ..Effort::default() };
+            Sample::of(&stage.renders(strategies, 100, first..first + 24), stage.width())
+        };
+        for (strategies, first) in [(Strategies::BDPT, 0), (Strategies::LT, 2000)] {
+            let usual = measure(strategies, LightStarts::Emitted, first);
+            let aimed = measure(strategies, LightStarts::Aimed, first + 1000);
+            claims.equal(&format!("{name}, {strategies:?}"), &aimed, &usual);
+        }
+    }
+    claims.settle();
+}
+
 #[test]
 fn learnt_starts_show_the_same() {
     let mut claims = Claims::new();
-    let learnt = Effort { learnt_starts: true, ..Effort::default() };
+    let learnt = Effort { starts: LightStarts::Learnt, ..Effort::default() };
     for (name, scene) in [("lamps", lamps()), ("outdoors", outdoors()), ("fire", fire())] {
         let mut stage = Stage::new(&scene);
         let mut measure = |strategies: Strategies, effort: Effort, first: u64| {

@@ -62,7 +62,7 @@ def begin(job: Job, crops: list[str]) -> list[str]:
     return there
 
 
-CHOSEN = ("chosen_by_pilot", "guide", "basis", "learnt_starts", "sky")
+CHOSEN = ("chosen_by_pilot", "guide", "basis", "aimed_starts", "learnt_starts", "sky")
 """What decides about noise alone: parts may differ in it, as `merge` allows (src/cli/provenance.rs: of_image)."""
 
 

@@ -9,7 +9,9 @@ use crate::{
     },
     film::sharing::FilmSamples,
     sampling::{Basis, Sampler},
-    transport::{Algorithm, Connections, FirstPass, Guiding, Heuristic, Sky, strategy::StrategyKind},
+    transport::{
+        Algorithm, Connections, FirstPass, Guiding, Heuristic, LightStarts, Sky, strategy::StrategyKind,
+    },
 };
 use clap::{Args, ValueEnum};
 
@@ -64,13 +66,14 @@ pub struct Estimator {
     #[arg(long, value_name = "NAME", value_parser = one_of(&Connections::NAMES), help_heading = heading::STUDIES)]
     pub connections: Option<Connections>,
 
-    /// Where light subpaths start [default: a pilot decides where emitters are far from view; emitted with --strategies]
+    /// Where light subpaths start [default: a pilot decides; emitted with --strategies]
     ///
-    /// emitted: as emitters emit; learnt: where about a second of training found that light reaches the image, such as through
+    /// emitted: as emitters emit; aimed: a part of them sets out for glass, mirrors and bodies of fog, which light from far away
+    /// hardly meets by chance; learnt: where about a second of training found that light reaches the image, such as through
     /// a small opening. Next-event estimation then aims at the sky through the same openings. No pilot chooses this for
     /// --integrator pt. The expected image is the same.
-    #[arg(long, value_name = "NAME", value_parser = one_of(&STARTS), help_heading = heading::STUDIES)]
-    pub starts: Option<bool>,
+    #[arg(long, value_name = "NAME", value_parser = one_of(&LightStarts::NAMES), help_heading = heading::STUDIES)]
+    pub starts: Option<LightStarts>,
 
     /// Which strategies find the light of the sky, in scenes that have other emitters too
     /// [default: a pilot decides; next-event with --strategies]
@@ -187,9 +190,6 @@ pub enum Profile {
     /// General code with every feature, for comparison
     Everything,
 }
-
-/// Where light subpaths start: true where that is learnt.
-const STARTS: [(&str, bool); 2] = [("emitted", false), ("learnt", true)];
 
 fn soften(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|alpha| (1e-4..=0.5).contains(alpha));

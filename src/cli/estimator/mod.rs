@@ -18,7 +18,7 @@ use crate::{
     scene::build::Setup,
     settings::Overrides,
     transport::{
-        Algorithm, Connections, Effort, FirstPass, Guiding, Heuristic, Options, Sky, Strategies,
+        Algorithm, Connections, Effort, FirstPass, Guiding, Heuristic, LightStarts, Options, Sky, Strategies,
         equiangular_applies, needs::Needs, profiles::ProfileName, strategy::StrategyKind,
     },
 };
@@ -117,8 +117,7 @@ impl Estimator {
         let hide_emitters = (self.hide_emitters || scene.hide_emitters) && !self.no_hide_emitters;
         let guide = self.guiding(scene, algorithm, heuristic)?;
         let sky = self.sky(setup, strategies).unwrap_or(scene.effort.sky);
-        let effort =
-            Effort { guide, learnt_starts: self.learnt_starts(setup, strategies, sky), sky, ..scene.effort };
+        let effort = Effort { guide, starts: self.starts(setup, strategies, sky), sky, ..scene.effort };
         let options = Options {
             algorithm,
             strategies,
@@ -158,14 +157,16 @@ impl Estimator {
         self.sky.filter(|_| applies)
     }
 
-    fn learnt_starts(&self, setup: &Setup, strategies: Strategies, sky: Sky) -> bool {
-        let applies = strategies.use_starts(&setup.scene, sky);
+    fn starts(&self, setup: &Setup, strategies: Strategies, sky: Sky) -> LightStarts {
+        let applies = match self.starts {
+            Some(LightStarts::Aimed) => strategies.need_light_walks(),
+            _ => strategies.use_starts(&setup.scene, sky),
+        };
         if self.starts.is_some() && !applies {
-            complain(
-                "warning: --starts has no effect: no strategy in use traces light subpaths or connects to a sky",
-            );
+            let needed = "no strategy in use traces light subpaths or, for learnt starts, connects to a sky";
+            complain(&format!("warning: --starts has no effect: {needed}"));
         }
-        self.starts == Some(true) && applies
+        self.starts.filter(|_| applies).unwrap_or_default()
     }
 
     fn first_pass(&self, scene: Options, algorithm: Algorithm) -> FirstPass {

@@ -3,8 +3,9 @@
 //! By the balance heuristic, a sample of the contribution y has the second moment y^2 (sum of n p) / (sum of n' p)
 //! under counts n' in place of n (after Grittmann et al. 2022, Efficiency-Aware Multiple Importance Sampling). So paths
 //! of strategies that a choice leaves out count in full, however rarely its others make them: the pilot has seen them.
-//! With learnt starts, each contribution also says how often light subpaths would start there otherwise, and how often
-//! next-event estimation would find it. The albedos of a path say how often walks would survive if they ended more often.
+//! With aimed or learnt starts, each contribution also says how often light subpaths would start there otherwise, and how
+//! often next-event estimation would find it. The albedos of a path say how often walks would survive if they ended more
+//! often.
 //!
 //! Two contributions to one sample also add their product to its second moment: a walk connected to a sky at each of
 //! many vertices brings a sum, a walk that hits the sky a single number. This product is known under other counts and
@@ -20,7 +21,7 @@ use crate::{
     film::Film,
     learning::tiles::Tiles,
     passes::{blocks::Blocks, compiled::Compiled},
-    settings::options::{Effort, Sky, Survival},
+    settings::options::{Effort, LightStarts, Sky, Survival},
     transport::{lengths, strategy::StrategyKind},
 };
 use rayon::prelude::*;
@@ -89,20 +90,20 @@ pub(crate) struct Forecast {
     pub(super) found: Vec<(u32, Found)>,
     pub(super) camera: Works,
     pub(super) light: Works,
-    /// The work of light subpaths without learnt starts.
-    pub(super) light_unlearnt: Works,
-    /// Light subpaths began at learnt starts, and next-event estimation aimed at their portals.
-    pub(super) is_learnt: bool,
+    /// The work of light subpaths that start as emitters emit.
+    pub(super) light_emitted: Works,
+    /// Where light subpaths started.
+    pub(super) starts: LightStarts,
     /// When walks ended.
     pub(super) survival: Survival,
 }
 
 impl Forecast {
-    /// Gathers the samples of so many `passes` over at least so many `pixels` of `compiled`, whose walks end by
-    /// `survival`. Images will have the part `left` of the variance that camera samples have here.
+    /// Gathers the samples of so many `passes` over at least so many `pixels` of `compiled`, whose walks start and end by
+    /// `effort`. Images will have the part `left` of the variance that camera samples have here.
     pub(super) fn fly(
         compiled: &dyn Compiled,
-        survival: Survival,
+        Effort { survival, starts, .. }: Effort,
         [passes, pixels]: [usize; 2],
         left: f64,
     ) -> Self {
@@ -115,8 +116,8 @@ impl Forecast {
             }
             parts.par_extend((0..blocks).into_par_iter().map(|block| part(compiled, survival, pass, block)));
         }
-        let is_learnt = compiled.starts().is_some();
-        Self { survival, is_learnt, ..Self::of(parts, compiled.film(), compiled.blocks(), left) }
+        let starts = compiled.starts().map_or(LightStarts::Emitted, |_| starts);
+        Self { survival, starts, ..Self::of(parts, compiled.film(), compiled.blocks(), left) }
     }
 
     fn of(parts: Vec<Part>, film: &Film, blocks: &Blocks, left: f64) -> Self {
@@ -134,8 +135,8 @@ impl Forecast {
         tiles.iter_mut().for_each(|tile| tile.mean /= tile.samples.max(1.0));
         let place: BTreeMap<u32, u32> = pixels.keys().copied().zip(0..).collect();
         let works: [fn(&Part) -> &Works; 3] =
-            [|part| &part.camera.work, |part| &part.light.work, |part| &part.light.unlearnt];
-        let [camera, light, light_unlearnt]: [Works; 3] = works.map(|works| {
+            [|part| &part.camera.work, |part| &part.light.work, |part| &part.light.emitted];
+        let [camera, light, light_emitted]: [Works; 3] = works.map(|works| {
             std::array::from_fn(|i| parts.iter().fold(Work::default(), |sum, part| sum.and(&works(part)[i])))
         });
         // Light subpaths traced stand for those of a pass.
@@ -161,12 +162,13 @@ impl Forecast {
         tiles.iter_mut().zip(levels).for_each(|(tile, level)| tile.level = level);
         let survival = Survival::default();
         let pixels = pixels.into_iter().map(|(pixel, samples)| (tile(pixel), f64::from(samples))).collect();
-        Self { tiles, pixels, found, camera, light, light_unlearnt, is_learnt: false, survival }
+        Self { tiles, pixels, found, camera, light, light_emitted, starts: LightStarts::Emitted, survival }
     }
 
-    /// The part of the light subpaths that the lens sees; none without any. Where it is small, learnt starts may pay.
+    /// The part of the light subpaths that the lens would see if they started as emitters emit; none without any. Where it
+    /// is small, learnt starts may pay.
     pub(super) fn seen_subpaths(&self) -> Option<f64> {
-        let [Work { reaching, walks, .. }, ..] = self.light;
+        let [Work { reaching, walks, .. }, ..] = self.light_emitted;
         (walks > 0.0).then(|| reaching / walks)
     }
 
@@ -279,7 +281,11 @@ impl Forecast {
             / self.light_work(&choice.effort).kept.max(1.0);
         let mut each = choice.counts().map(|count| count as f32);
         each[StrategyKind::Connection as usize] *= draws as f32;
-        Counts { each, learnt: choice.effort.learnt_starts, with_sky: choice.effort.sky == Sky::NextEvent }
+        Counts {
+            each,
+            as_flown: choice.effort.starts == self.starts,
+            with_sky: choice.effort.sky == Sky::NextEvent,
+        }
     }
 
     /// Of each tile, where the pixels have these `sums`.
@@ -308,7 +314,7 @@ impl Forecast {
 
     /// The work of light subpaths by `effort`.
     fn light_work(&self, effort: &Effort) -> &Work {
-        let works = if effort.learnt_starts { &self.light } else { &self.light_unlearnt };
+        let works = if effort.starts == self.starts { &self.light } else { &self.light_emitted };
         &works[index(End::AtOnce(effort.survival))]
     }
 

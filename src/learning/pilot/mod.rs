@@ -16,7 +16,7 @@ use crate::{
     passes::{Settings, compiled},
     sampling::Sampler,
     scene::Scene,
-    settings::options::{Effort, Guiding, Sky, Survival},
+    settings::options::{Effort, Guiding, LightStarts, Sky, Survival},
     transport::{Options, Strategies, coverage, equiangular_applies, strategy::StrategyKind},
 };
 use forecast::{Forecast, PIXELS_PER_BLOCK};
@@ -139,8 +139,8 @@ pub fn choose(scene: &Scene, film: &Film, settings: &Settings, decided: Decided)
     };
     let guide = if asks { Guiding::Never } else { settings.options.effort.guide };
     let sky = decided.sky.unwrap_or_default();
-    let learnt_starts = decided.starts == Some(true) && all.use_starts(scene, sky);
-    let effort = Effort { learnt_starts, guide, sky, ..Effort::default() };
+    let starts = decided.starts.filter(|_| all.use_starts(scene, sky)).unwrap_or_default();
+    let effort = Effort { starts, guide, sky, ..Effort::default() };
     let base = Choice { among: all, strategies: all, effort, gain: 1.0 };
     let work = settings.budget.samples_of(film.len());
     let none = Report { choice: base, candidates: Vec::new(), samples: 0.0 };
@@ -156,8 +156,8 @@ pub fn choose(scene: &Scene, film: &Film, settings: &Settings, decided: Decided)
 /// Decisions made before the pilot.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Decided {
-    /// Whether starts are learnt, see [`Effort::learnt_starts`].
-    pub starts: Option<bool>,
+    /// Where light subpaths start.
+    pub starts: Option<LightStarts>,
     /// How the environment is found.
     pub sky: Option<Sky>,
 }
@@ -178,9 +178,9 @@ struct Pilots<'a> {
 impl Pilots<'_> {
     /// The best choice; with a guide if one `asks` for it and it pays.
     fn choose(&self, asks: bool) -> Report {
-        let first = self.fly(self.base.effort.learnt_starts);
-        let error = first.error_where_lit(&self.base);
-        let pilot = if self.may_learn_starts(&first, error) { self.fly(true) } else { first };
+        let first = self.fly(self.starts_without_training());
+        let error = self.alike(&first, |choice| first.error_where_lit(choice));
+        let pilot = if self.may_learn_starts(&first, error) { self.fly(LightStarts::Learnt) } else { first };
         let guided = || if asks && self.may_guide(error) { self.guided(&pilot) } else { None };
         guided().unwrap_or_else(|| self.report(&pilot))
     }
@@ -195,17 +195,29 @@ impl Pilots<'_> {
             let pays = training::guide_pays(self.scene, self.film, self.settings.options);
             return pays.then(|| guided.choose(false));
         }
-        let follower = guided.fly(self.decided.starts.unwrap_or(true));
+        let follower = guided.fly(self.decided.starts.unwrap_or(LightStarts::Learnt));
         let pays = GUIDED * guided.cost(&follower) < self.cost(usual);
         pays.then(|| guided.report(&follower))
     }
 
-    /// Error x time of all strategies alike as `pilot` saw them, with learnt starts where these are better. No choice is
-    /// made that chance could favour: where light is rare, a few paths are all that is known.
+    /// The starts of the first pilot: those of the base, or those that need no training and find more.
+    fn starts_without_training(&self) -> LightStarts {
+        match self.decided.starts {
+            None if self.base.strategies.need_light_walks() => LightStarts::Aimed,
+            _ => self.base.effort.starts,
+        }
+    }
+
+    /// Error x time of all strategies alike as `pilot` saw them.
     fn cost(&self, pilot: &Forecast) -> f64 {
-        let cost = |choice: Choice| pilot.error_where_lit(&choice) * pilot.time(&choice);
-        let learnt = Choice { effort: Effort { learnt_starts: true, ..self.base.effort }, ..self.base };
-        if pilot.is_learnt { cost(learnt).min(cost(self.base)) } else { cost(self.base) }
+        self.alike(pilot, |choice| pilot.error_where_lit(choice) * pilot.time(choice))
+    }
+
+    /// The `cost` of all strategies alike, with the starts of `pilot` where these are better. No other choice is made that
+    /// chance could favour: where light is rare, a few paths are all that is known.
+    fn alike(&self, pilot: &Forecast, cost: impl Fn(&Choice) -> f64) -> f64 {
+        let effort = Effort { starts: pilot.starts, ..self.base.effort };
+        cost(&self.base).min(cost(&Choice { effort, ..self.base }))
     }
 
     /// True if starts may pay for what learning them costs in an image with such an `error` of a pixel sample.
@@ -222,10 +234,9 @@ impl Pilots<'_> {
     }
 
     /// A few samples of all strategies.
-    fn fly(&self, learnt_starts: bool) -> Forecast {
+    fn fly(&self, starts: LightStarts) -> Forecast {
         let Choice { effort, .. } = self.base;
-        let effort =
-            Effort { survival: self.survivals()[0], learnt_starts, connections: CONNECTIONS, ..effort };
+        let effort = Effort { survival: self.survivals()[0], starts, connections: CONNECTIONS, ..effort };
         let options = Options {
             strategies: self.strategies(),
             effort,
@@ -247,7 +258,7 @@ impl Pilots<'_> {
             FilmSamples::Shared => self.film.variance_left(),
             FilmSamples::Own | FilmSamples::Apart => 1.0,
         };
-        Forecast::fly(&*compiled, effort.survival, [passes, samples / passes], left)
+        Forecast::fly(&*compiled, effort, [passes, samples / passes], left)
     }
 
     /// The roulettes to choose from. The pilot uses the first and forecasts those that end walks sooner. Endless fog
@@ -265,7 +276,7 @@ impl Pilots<'_> {
 
     /// What `pilot` makes of all that may be chosen.
     fn report(&self, pilot: &Forecast) -> Report {
-        let mut choices = self.candidates(pilot.is_learnt);
+        let mut choices = self.candidates(pilot.starts);
         choices.retain(|choice| !self.is_second(pilot, choice));
         let errors = pilot.judge(&choices);
         let foretell = |(choice, error): (Choice, Error)| Foretold {
@@ -303,10 +314,12 @@ impl Pilots<'_> {
         let Choice { strategies, effort, .. } = foretold.choice;
         let all = self.base.strategies;
         let is_spread_less = strategies.need_light_walks() && effort.survival != self.base.effort.survival;
-        let rare = [is_spread_less, strategies.equiangular && !all.equiangular];
+        let starts = Some(effort.starts).filter(|starts| *starts != self.base.effort.starts);
+        let is_aimed = starts == Some(LightStarts::Aimed);
+        let rare = [is_spread_less, strategies.equiangular && !all.equiangular, is_aimed];
         let burden = WORTHWHILE.powi(rare.into_iter().filter(|is| *is).count() as i32);
-        let learnt = effort.learnt_starts && !self.base.effort.learnt_starts;
-        let burden = burden * if learnt { LEARNT } else { 1.0 } * self.for_denoiser(&foretold.choice);
+        let is_learnt = starts == Some(LightStarts::Learnt);
+        let burden = burden * if is_learnt { LEARNT } else { 1.0 } * self.for_denoiser(&foretold.choice);
         burden * (foretold.error.usual + UNSEEN * least) * foretold.time
     }
 
@@ -316,10 +329,10 @@ impl Pilots<'_> {
         if is_denoised && choice.strategies.need_light_walks() { DENOISED } else { 1.0 }
     }
 
-    /// The choices that leave no light out and keep to earlier decisions; with learnt starts too if the pilot knows
-    /// them. Either all strategies that need light subpaths run, or none: in 29 scenes drawn at random, only some of
-    /// them were never much better, and a short pilot may not see what they miss.
-    fn candidates(&self, knows_starts: bool) -> Vec<Choice> {
+    /// The choices that leave no light out and keep to earlier decisions; with the starts that the pilot `knows`, too.
+    /// Either all strategies that need light subpaths run, or none: in 29 scenes drawn at random, only some of them were
+    /// never much better, and a short pilot may not see what they miss.
+    fn candidates(&self, knows: LightStarts) -> Vec<Choice> {
         let all = self.strategies();
         let camera = Strategies { connection: false, lens: false, ..all };
         let hits = camera.without(StrategyKind::NextEvent).without(StrategyKind::Equiangular);
@@ -328,22 +341,21 @@ impl Pilots<'_> {
         sets.sort_unstable_by_key(|set| set.names());
         sets.dedup();
         sets.retain(|set| coverage::is_complete(self.scene, &self.settings.options, *set));
-        sets.into_iter().flat_map(|set| self.efforts(set, knows_starts)).collect()
+        sets.into_iter().flat_map(|set| self.efforts(set, knows)).collect()
     }
 
     /// The same of one set of strategies.
-    fn efforts(&self, strategies: Strategies, knows_starts: bool) -> Vec<Choice> {
+    fn efforts(&self, strategies: Strategies, knows: LightStarts) -> Vec<Choice> {
         let walks = strategies.need_light_walks();
         let differ = |(light_walks, connections): &(f32, u32)| {
             (walks || *light_walks == 1.0) && (strategies.connection || *connections == 1)
         };
-        let starts = |sky: Sky| -> &[bool] {
-            match self.decided.starts {
-                _ if !strategies.use_starts(self.scene, sky) => &[false],
-                Some(true) => &[true],
-                None if knows_starts => &[false, true],
-                _ => &[false],
-            }
+        let starts = |sky: Sky| match (self.decided.starts, knows) {
+            _ if !strategies.use_starts(self.scene, sky) => vec![LightStarts::Emitted],
+            (Some(starts), _) => vec![starts],
+            (None, LightStarts::Aimed) if !walks => vec![LightStarts::Emitted],
+            (None, LightStarts::Emitted) => vec![LightStarts::Emitted],
+            (None, other) => vec![LightStarts::Emitted, other],
         };
         let is_open = self.decided.sky.is_none() && strategies.emitter_hit && strategies.next_event;
         let skies: &[Sky] = match is_open && self.scene.lights.has_lamps_besides_sky() {
@@ -353,11 +365,11 @@ impl Pilots<'_> {
         let mut choices = Vec::new();
         for (light_walks, connections) in COUNTS.into_iter().filter(differ) {
             for survival in self.survivals().iter().copied() {
-                for (sky, learnt_starts) in
-                    skies.iter().flat_map(|sky| starts(*sky).iter().map(move |starts| (*sky, *starts)))
+                for (sky, starts) in
+                    skies.iter().flat_map(|sky| starts(*sky).into_iter().map(move |starts| (*sky, starts)))
                 {
                     let effort =
-                        Effort { survival, light_walks, connections, learnt_starts, sky, ..self.base.effort };
+                        Effort { survival, light_walks, connections, starts, sky, ..self.base.effort };
                     choices.push(Choice { strategies, effort, ..self.base });
                 }
             }

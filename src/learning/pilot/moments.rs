@@ -58,8 +58,9 @@ impl Weighed {
 /// How often strategies run, by kind.
 pub(super) struct Counts {
     pub each: [f32; StrategyKind::ALL.len()],
-    /// Light subpaths begin at learnt starts, and next-event estimation aims at their portals.
-    pub learnt: bool,
+    /// Light subpaths begin as those of the pilot did, and next-event estimation aims at the same portals; else as
+    /// emitters emit.
+    pub as_flown: bool,
     /// Next-event estimation connects to the environment too.
     pub with_sky: bool,
 }
@@ -78,7 +79,7 @@ impl Counts {
         let count = self.each[kind as usize];
         match kind {
             StrategyKind::NextEvent => count * self.joined(one),
-            StrategyKind::Connection | StrategyKind::Lens if !self.learnt => count * one.unlearnt,
+            StrategyKind::Connection | StrategyKind::Lens if !self.as_flown => count * one.unlearnt,
             _ => count,
         }
     }
@@ -86,7 +87,7 @@ impl Counts {
     /// How often next-event estimation finds a contribution, over how often it did in the pilot.
     #[inline(always)]
     fn joined(&self, one: &Weighed) -> f32 {
-        let aimed = if self.learnt { 1.0 } else { one.unaimed };
+        let aimed = if self.as_flown { 1.0 } else { one.unaimed };
         if self.with_sky { aimed } else { aimed * one.without_sky }
     }
 
@@ -94,7 +95,7 @@ impl Counts {
     #[inline(always)]
     pub(super) fn density(&self, one: &Weighed) -> Density {
         let [hits, next_event, connections, lens, equiangular] = self.each;
-        let begun = if self.learnt { 1.0 } else { one.unlearnt };
+        let begun = if self.as_flown { 1.0 } else { one.unlearnt };
         let hit = one.shares[0] * hits;
         let camera = hit + one.shares[1] * next_event * self.joined(one) + one.shares[4] * equiangular;
         let light = one.shares[2] * connections + one.shares[3] * lens;

@@ -147,8 +147,8 @@ pub(super) struct Recorded {
     pub found: Vec<Found>,
     /// By each of [`WALKS_END`], in place of that of the pilot.
     pub work: Works,
-    /// The work of light subpaths without learnt starts.
-    pub unlearnt: Works,
+    /// The work of light subpaths that start as emitters emit.
+    pub emitted: Works,
 }
 
 /// Sees the walks of a block and what they contribute; those of the camera to the last of its pixels.
@@ -199,7 +199,7 @@ impl<'a> Recorder<'a> {
     /// Counts some work of the walk at hand.
     fn count(&mut self, counter: impl Fn(&mut Work) -> &mut f64) {
         let unlearnt = f64::from(self.follower.unlearnt());
-        let Recorded { work, unlearnt: works, .. } = &mut self.recorded;
+        let Recorded { work, emitted: works, .. } = &mut self.recorded;
         for ((reached, work), works) in self.reached.iter().zip(work).zip(works) {
             *counter(work) += reached;
             *counter(works) += reached * unlearnt;
@@ -265,8 +265,8 @@ struct Counted {
 
 impl BlockObserver for Recorder<'_> {
     fn light(&mut self, _: u64) -> &mut dyn Observer {
-        let Recorded { work, unlearnt, .. } = &mut self.recorded;
-        work.iter_mut().chain(unlearnt).for_each(|work| work.walks += 1.0);
+        let Recorded { work, emitted, .. } = &mut self.recorded;
+        work.iter_mut().chain(emitted).for_each(|work| work.walks += 1.0);
         self
     }
 
@@ -351,7 +351,9 @@ impl Observer for Recorder<'_> {
         };
         if let Meeting::Lens(film) = meeting {
             if !self.is_seen {
+                let emitted = f64::from(self.follower.unlearnt());
                 self.recorded.work.iter_mut().for_each(|work| work.reaching += 1.0);
+                self.recorded.emitted.iter_mut().for_each(|work| work.reaching += emitted);
                 self.is_seen = true;
             }
             let add = |pixel, value| add(pixel as u32, value);

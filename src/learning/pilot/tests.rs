@@ -28,6 +28,11 @@ fn room(things: &str) -> (Setup, Settings) {
         r#"{{"type": "scene", "camera": {{"type": "perspective", "to_world": [{{"type": "lookat", "origin": [0, 0, 0.9], "target": [0, 0, -1]}}]}},
         "room": {{"type": "cube", "flip_normals": true, "bsdf": {{"type": "diffuse", "reflectance": 0.6}}}}, {things}}}"#
     );
+    written(&text)
+}
+
+/// The same of the scene that `text` describes.
+fn written(text: &str) -> (Setup, Settings) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.json");
     std::fs::write(&path, text).unwrap();
@@ -77,13 +82,12 @@ fn read(path: &Path, strategies: Strategies) -> (Setup, Settings) {
     )
 }
 
-/// The pilot of an image without end, with learnt starts or without.
-fn flown(setup: &Setup, settings: &Settings, learnt_starts: bool) -> Forecast {
+/// The pilot of an image without end, whose light subpaths begin at `starts`.
+fn flown(setup: &Setup, settings: &Settings, starts: LightStarts) -> Forecast {
     let among = settings.options.strategies;
     let base = Choice { among, strategies: among, effort: Effort::default(), gain: 1.0 };
     let Setup { scene, film, .. } = setup;
-    Pilots { scene, film, settings, decided: Decided::default(), base, work: f64::INFINITY }
-        .fly(learnt_starts)
+    Pilots { scene, film, settings, decided: Decided::default(), base, work: f64::INFINITY }.fly(starts)
 }
 
 #[test]
@@ -104,7 +108,7 @@ fn light_subpaths_must_be_better_for_a_denoiser() {
 #[test]
 fn path_tracing_has_no_light_subpaths_to_see() {
     let (setup, settings) = small("efficiency/glass_fog_sky.xml", Strategies::PT);
-    assert_eq!(flown(&setup, &settings, false).seen_subpaths(), None);
+    assert_eq!(flown(&setup, &settings, LightStarts::Emitted).seen_subpaths(), None);
 }
 
 fn chosen((setup, settings): &(Setup, Settings), samples_per_pixel: u64) -> Report {
@@ -125,6 +129,27 @@ fn without_any_light_all_strategies_run_alike() {
 #[test]
 fn light_from_a_tube_is_worth_a_guide() {
     assert_eq!(chosen(&with_tube(1.2), 1000).choice.effort.guide, Guiding::Always);
+}
+
+/// Hardly one in ten thousand light subpaths of this sun meets the ball by chance, and no pilot would know what its caustic
+/// costs.
+#[test]
+fn light_subpaths_aim_at_a_ball_of_glass_under_the_sun() {
+    let field = r#""field": {"type": "rectangle", "bsdf": {"type": "diffuse"}, "to_world": [
+        {"type": "rotate", "axis": [1, 0, 0], "angle": -90}, {"type": "scale", "value": 30}, {"type": "translate", "value": [0, -1, 0]}]},
+        "ball": {"type": "sphere", "center": [0, -0.6, -1.5], "radius": 0.3, "bsdf": {"type": "roughdielectric", "alpha": 0.05}},
+        "sun": {"type": "directional", "direction": [0.3, -1, 0.1]}"#;
+    let with_field = |things: &str| {
+        let text = format!(
+            r#"{{"type": "scene", "camera": {{"type": "perspective", "to_world": [{{"type": "lookat", "origin": [0, 1, 2],
+            "target": [0, -0.7, -1.5]}}]}}, {things}}}"#
+        );
+        written(&text)
+    };
+    let found = chosen(&with_field(field), 1000);
+    assert_eq!(found.choice.effort.starts, LightStarts::Aimed, "{:?}", found.candidates[0]);
+    let chalk = field.replace("roughdielectric", "diffuse").replace(r#", "alpha": 0.05"#, "");
+    assert_eq!(chosen(&with_field(&chalk), 1000).choice.effort.starts, LightStarts::Emitted);
 }
 
 /// What takes longer than it can gain is left out; what it takes else is a small part of the samples to come.
@@ -214,8 +239,8 @@ fn what_a_choice_leaves_out_is_no_outlier() {
         found,
         camera: work,
         light: work,
-        light_unlearnt: work,
-        is_learnt: false,
+        light_emitted: work,
+        starts: LightStarts::Emitted,
         survival: Survival::Albedo,
     };
     let effort = Effort::default();
@@ -235,11 +260,11 @@ fn pilots_foresee_the_noise_of_other_counts() {
     for (scene, (setup, settings)) in
         scenes.into_iter().chain([("shade", with_shade()), ("glass", with_glass())])
     {
-        let forecast = flown(&setup, &settings, true);
+        let forecast = flown(&setup, &settings, LightStarts::Learnt);
         let (among, effort) = (Strategies::BDPT, Effort::default());
         let all = Choice { among, strategies: among, effort, gain: 1.0 };
         let four = Effort { connections: 4, ..all.effort };
-        let learnt = Effort { learnt_starts: true, ..all.effort };
+        let learnt = Effort { starts: LightStarts::Learnt, ..all.effort };
         let longer = Effort { survival: Survival::FourthRoot, ..all.effort };
         let mut choices = vec![
             all,

@@ -27,7 +27,7 @@ class RenderOptions(TypedDict, total=False):
     guide: Literal["auto", "always", "never"] | bool | None
     heuristic: str | None
     connections: Literal["cached", "all"] | None
-    starts: Literal["emitted", "learnt"] | None
+    starts: Literal["emitted", "aimed", "learnt"] | None
     sky: Literal["next-event", "hit"] | None
     basis: Literal["quadtree", "bins", "haar", "links"] | None
     first_pass: Literal["walks", "particles", "links"] | None

@@ -91,7 +91,7 @@ impl Lights {
 
     /// Samples a start on the emitter `index`, chosen with probability `chosen`, by its own distributions or by those
     /// that were `learnt`. The densities are the emitter's own in both cases.
-    fn start(
+    pub(super) fn start(
         &self,
         geometry: &Geometry,
         index: usize,

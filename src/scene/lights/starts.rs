@@ -14,6 +14,8 @@
 //! A part of p'(w | x) aims at portals. Light of a sky comes through a hole from all directions, and for each of them the
 //! hole lies elsewhere on the disk: a table needs thousands of starts to know it, a portal a few.
 
+mod aimed;
+
 use super::{Disk, EmitterPoint, Lights, aim::Openings};
 use crate::{
     math::{Vec2, Vec3, warp},
@@ -87,7 +89,7 @@ pub struct Starts {
 }
 
 /// Those of one emitter. What is not known is as the emitter has it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Learnt {
     /// (1 - a) P'/P.
     over_unlearnt: f32,

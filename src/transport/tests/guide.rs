@@ -69,7 +69,7 @@ fn weights_of_guided_paths() {
     let along = Options { strategies: Strategies { equiangular: true, ..Strategies::BDPT }, ..options };
     let report = examine::<Guided<Fog>>("guided, along", &room, along, 400);
     assert!(report.equiangular >= 30, "{} of {}", report.equiangular, report.paths);
-    let learnt = Options { effort: Effort { learnt_starts: true, ..options.effort }, ..options };
+    let learnt = Options { effort: Effort { starts: LightStarts::Learnt, ..options.effort }, ..options };
     all("learnt", examine::<Guided<Smoke>>("guided, learnt starts", &waves, learnt, 600));
 }
 

@@ -19,7 +19,8 @@ mod shut_in;
 mod starts;
 
 use super::{
-    Connections, Effort, Estimator, Heuristic, LightCache, Nowhere, Options, Strategies, Survival,
+    Connections, Effort, Estimator, Heuristic, LightCache, LightStarts, Nowhere, Options, Strategies,
+    Survival,
     profile::Profile,
     profiles::{
         Bounded, ByCompared, ByCutoff, ByKind, ChromaticBounded, ChromaticFog, Everything, Fire, Fog, Guided,
@@ -57,7 +58,11 @@ const SEED: u64 = 1;
 
 /// Compares all paths that `pairs` camera and light subpaths make.
 fn examine<P: Profile>(name: &'static str, setup: &Setup, options: Options, pairs: u64) -> Report {
-    let starts = options.effort.learnt_starts.then(|| starts::lessons(setup));
+    let starts = match options.effort.starts {
+        LightStarts::Emitted => None,
+        LightStarts::Aimed => setup.scene.aimed_starts(),
+        LightStarts::Learnt => Some(starts::lessons(setup)),
+    };
     let learnt =
         Learnt { starts, guide: options.effort.is_guided().then(guide::arbitrary), ..Learnt::default() };
     let estimator = Estimator::<P>::new(&setup.scene, options, learnt, SEED, PIXELS, PIXELS);
@@ -186,7 +191,7 @@ fn all_vertices_of_a_pair_of_walks() {
 /// Emitters of all kinds with learnt starts.
 #[test]
 fn learnt_starts() {
-    let options = Options { effort: Effort { learnt_starts: true, ..ALL.effort }, ..ALL };
+    let options = Options { effort: Effort { starts: LightStarts::Learnt, ..ALL.effort }, ..ALL };
     let all = |name: &'static str, report: Report| {
         assert!(report.paths >= 1000, "{name}: {} paths", report.paths);
     };
@@ -204,6 +209,23 @@ fn learnt_starts() {
     all("starts seen", examine::<Bounded>("learnt, starts seen", &open, light, 1000));
 }
 
+/// The same with starts that aim at glass and smoke.
+#[test]
+fn aimed_starts() {
+    let options = Options { effort: Effort { starts: LightStarts::Aimed, ..ALL.effort }, ..ALL };
+    let all = |name: &'static str, report: Report| {
+        assert!(report.paths >= 1000, "{name}: {} paths", report.paths);
+    };
+    let open = build(&[OUTSIDE, SMOKE, FROSTED_BALL, GROUND, SKY, SUN, POINT, SPOT, LAMP, BULB]);
+    all("open", examine::<Bounded>("aimed, in the open", &open, options, 1000));
+    let room = build(&[FOG, INSIDE, ROOM, GLASS_BALL, LUMINAIRE, BEAM, PROFILED_POINT, SPOT, BULB]);
+    all("room", examine::<Fog>("aimed, in a room", &room, options, 1000));
+    let image = build(&[OUTSIDE, CHROMATIC_SMOKE, GROUND, SKY_IMAGE, SUN]);
+    all("image", examine::<Everything>("aimed, sky image", &image, options, 1000));
+    let fire = build(&[OUTSIDE, CHROMATIC_FIRE, FROSTED_BALL, GROUND, SUN, BULB]);
+    all("fire", examine::<ByKind>("aimed, fire", &fire, options, 600));
+}
+
 /// Next-event estimation leaves the environment alone.
 #[test]
 fn a_sky_that_is_hit_only() {
@@ -217,7 +239,7 @@ fn a_sky_that_is_hit_only() {
     all("image", examine::<Everything>("hit, sky image", &image, options, 1000));
     let fire = build(&[OUTSIDE, FIRE_BOX, GROUND, SKY]);
     all("fire", examine::<Fire>("hit, fire in a box", &fire, options, 600));
-    let learnt = Options { effort: Effort { learnt_starts: true, ..options.effort }, ..options };
+    let learnt = Options { effort: Effort { starts: LightStarts::Learnt, ..options.effort }, ..options };
     all("learnt", examine::<Bounded>("hit, learnt", &open, learnt, 1000));
 }
 

@@ -139,6 +139,25 @@ fn starts_come_as_often_as_their_densities_say() {
     }
 }
 
+/// The same of starts that aim at balls of glass and at smoke.
+#[test]
+fn aimed_starts_come_as_often_as_their_densities_say() {
+    let scenes = [
+        ("open", build(&[OUTSIDE, SMOKE, FROSTED_BALL, GROUND, SKY, SUN, POINT, SPOT, LAMP, BULB])),
+        ("room", build(&[FOG, INSIDE, ROOM, GLASS_BALL, LUMINAIRE, BEAM, PROFILED_POINT, SPOT, BULB])),
+        ("sky image", build(&[OUTSIDE, FROSTED_BALL, GROUND, SKY_IMAGE])),
+        ("fire", build(&[OUTSIDE, CHROMATIC_FIRE, FROSTED_BALL, GROUND, SUN, BULB])),
+        ("beam", build(&[OUTSIDE, SMOKE, GROUND, BULB, POINT, SEARCHLIGHT])),
+    ];
+    let most = -statrs_z(testing::significance(2 * scenes.len() * 400) / 2.0);
+    for (name, setup) in scenes {
+        let aimed = setup.scene.aimed_starts().expect("a target");
+        follow_their_densities(name, &setup, &aimed, most);
+    }
+    let nothing = build(&[OUTSIDE, GROUND, BALL, SUN]);
+    assert!(nothing.scene.aimed_starts().is_none(), "a ball of chalk");
+}
+
 /// Starts that were `learnt`. They come as often as their densities say, up to `most` standard deviations, and emit as much as others.
 fn follow_their_densities(name: &str, setup: &Setup, learnt: &Starts, most: f64) -> Vec<EmissionSample> {
     let (lights, geometry) = (&setup.scene.lights, &setup.scene.geometry);
