@@ -84,11 +84,12 @@ def options_of(method: str) -> dict[str, Any]:
 
 CHOICES: dict[str, dict[str, Any]] = {
     "guide": {"guide": "always"},
+    "aimed": {"starts": "aimed"},
     "learnt": {"starts": "learnt"},
     "sky": {"sky": "hit"},
     "pilot": {"strategies": None},
 }
-"""Of how paths are sampled: walks that follow a guide, light subpaths that start where it pays, a sky that is only hit, and all
+"""Of how paths are sampled: walks that follow a guide, light subpaths that start at targets or where it pays, a sky that is only hit, and all
 that a pilot of `bdpt` finds worth its time."""
 
 

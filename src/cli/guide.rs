@@ -62,8 +62,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     // As renders learn them.
     let usual = || if strategies.need_light_walks() { LightStarts::Learnt } else { LightStarts::Emitted };
     let starts = arguments.estimator.starts.unwrap_or_else(usual);
-    effort.starts =
-        if strategies.use_starts(&setup.scene, effort.sky) { starts } else { LightStarts::Emitted };
+    let is_aimed = starts == LightStarts::Aimed && !strategies.need_light_walks();
+    let applies = strategies.use_starts(&setup.scene, effort.sky) && !is_aimed;
+    effort.starts = if applies { starts } else { LightStarts::Emitted };
     let folder = outputs::folder(arguments.output.as_ref(), &arguments.scene, "guide")?;
     outputs::check_short(&FILES.map(|name| folder.join(name)))?;
     let findings = scene::threads(arguments.threads)?

@@ -5,7 +5,7 @@ use crate::{
     math::{Bounds, DVec3, Spectrum},
     medium::MediumIndex,
     render::progressive::optical_depths,
-    scene::build::Setup,
+    scene::{build::Setup, media::MediaMap},
 };
 use serde_json::{Value, json};
 
@@ -41,7 +41,7 @@ impl Overview {
         Self {
             size: low.cmple(high).all().then(|| [low, high].map(place)),
             camera: place(scene.sensor.position()),
-            camera_in: setup.medium_name(scene.media_map.sensor),
+            camera_in: camera_in(setup),
             media: (1..=setup.medium_names.len()).map(medium).collect(),
             depths,
             exposure: setup.exposure(),
@@ -91,6 +91,18 @@ impl Overview {
             "camera": { "medium": self.camera_in, "position": self.camera.to_array() },
             "thickness": self.thickness().map(|[least, middle, most]| json!({ "least": least, "median": middle, "greatest": most })),
         })
+    }
+}
+
+/// The medium around the camera, or all those that its rays start in.
+fn camera_in(setup: &Setup) -> String {
+    let MediaMap { sensor, sensor_media, .. } = &setup.scene.media_map;
+    match sensor_media.as_slice() {
+        [] => setup.medium_name(*sensor),
+        several => {
+            let names: Vec<String> = several.iter().map(|medium| setup.medium_name(*medium)).collect();
+            names.join(" and ")
+        }
     }
 }
 

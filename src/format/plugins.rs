@@ -66,9 +66,11 @@ fn check_parameter(object: &Object, tag: &str, property: &Property, known: &Know
         (Value::Reference(id), Some(Kind::Object(wanted))) => check_reference(property, id, wanted, known),
         (Value::String(word), Some(Kind::Object(wanted))) => Err(mere_word(property, word, wanted, known)),
         (Value::String(word), None) => {
-            let inside = inside(tag);
-            let of_plugin = |plugin: &str| of_plugin(plugin).into_iter().find(|tag| inside.contains(tag));
-            let named = inside.iter().find(|tag| **tag == by_name(&property.name)).copied();
+            let nests = |wanted: &&str| {
+                table(tag, &object.plugin).is_some_and(|table| table.nested(wanted).is_some())
+            };
+            let of_plugin = |plugin: &str| of_plugin(plugin).into_iter().find(nests);
+            let named = inside(tag).iter().find(|tag| **tag == by_name(&property.name)).copied();
             let meant = || known.get(word.as_str()).map_or(word, |object| &object.plugin);
             match named.or_else(|| of_plugin(meant())) {
                 Some(wanted) => Err(mere_word(property, word, wanted, known)),

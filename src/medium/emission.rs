@@ -91,10 +91,11 @@ impl EmissionDescription {
                 format!("give \"emission\", \"radiance\" or \"temperature\" too, or remove \"{name}\"");
             return Err(Error::new(params.location(), expected, "none", remedy));
         }
+        let given = given.filter(|given| given.scale > 0.0);
         if let Some(given) = &given {
             given.warn_if_dark(albedo, params);
         }
-        Ok(given.filter(|given| given.scale > 0.0))
+        Ok(given)
     }
 
     /// Warns if it is in proportion to an absorption that is nowhere.

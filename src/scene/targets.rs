@@ -19,28 +19,34 @@ const MOST: usize = 8;
 impl Scene {
     /// Starts of light subpaths that aim at the targets; none where no light sets out for any.
     pub fn aimed_starts(&self) -> Option<Arc<Starts>> {
-        Starts::aimed(&self.lights, &self.geometry, &self.targets()).map(Arc::new)
+        let aim = || Starts::aimed(&self.lights, &self.geometry, &self.targets()).map(Arc::new);
+        self.lights.aimed.recall(String::new(), aim)
     }
 
     /// Spheres about as large as the shapes that bend light or hold media that scatter. Of many, close ones have one in
     /// common. What fills much of the scene is met anyway and left out.
     fn targets(&self) -> Vec<Sphere> {
+        let large = 0.5 * largest_side(&self.geometry.bounds());
+        let is_small = |bounds: &Bounds| bounds.is_finite() && largest_side(bounds) < large;
         let shapes = (0..).zip(self.geometry.shapes());
         let found = shapes.filter(|(index, _)| self.is_target(*index)).map(|(_, shape)| shape.bounds());
-        let large = 0.5 * largest_side(&self.geometry.bounds());
-        let found = grouped(found.filter(|bounds| bounds.is_finite()).collect());
-        let spheres = found.iter().filter(|found| largest_side(found) < large).map(inscribed);
+        let found = grouped(found.filter(is_small).collect());
+        let spheres = found.iter().filter(|bounds| is_small(bounds)).map(sphere_in_place_of);
         spheres.filter(|sphere| sphere.radius_squared > f32::MIN_POSITIVE).collect()
     }
 
     fn is_target(&self, shape: u32) -> bool {
         let (bsdf, surface) = (self.bsdf(shape), self.surface(shape));
-        let within = surface.boundary.interior.filter(|_| surface.transmits);
+        let overlaps = self.media_map.overlaps.as_ref();
+        let stated = surface.boundary.interior.filter(|_| surface.transmits);
+        let within = stated.or_else(|| overlaps?.inside(shape));
         let scatters = |medium: &Medium| {
             let MediumProperties { sigma_t, albedo, .. } = medium.bound();
             sigma_t * albedo != Spectrum::ZERO
         };
-        bsdf.smooth().is_some()
+        // Mirrors, on one side or both.
+        let is_smooth = bsdf.smooth().is_some() || !(bsdf.is_connectible() || bsdf.has_null());
+        is_smooth
             || bsdf.scatters_across()
             || within.is_some_and(|medium| scatters(&self.media[medium.0 as usize]))
     }
@@ -50,7 +56,8 @@ fn largest_side(bounds: &Bounds) -> f32 {
     bounds.size().max_element()
 }
 
-fn inscribed(bounds: &Bounds) -> Sphere {
+/// As wide as its longest side. Wider spheres around it have its corners.
+fn sphere_in_place_of(bounds: &Bounds) -> Sphere {
     let radius = 0.5 * largest_side(bounds);
     Sphere { centre: centre(bounds), radius_squared: radius * radius }
 }

@@ -297,8 +297,9 @@ pub fn notes(scene: &Scene, options: &Options) -> Vec<String> {
     let Strategies { emitter_hit, next_event, lens, .. } = options.strategies;
     let missing = unreached(scene, options).into_iter();
     let mut notes: Vec<String> = missing.map(|kind| format!("does not sample {}", kind.light)).collect();
-    let around = &scene.media[scene.media_map.sensor.0 as usize];
-    if lens && !emitter_hit && !next_event && around.bound().sigma_t != Spectrum::ZERO {
+    let around = scene.media_map.sensor_media.iter().chain([&scene.media_map.sensor]);
+    let mut around = around.map(|medium| scene.media[medium.0 as usize].bound().sigma_t);
+    if lens && !emitter_hit && !next_event && around.any(|sigma_t| sigma_t != Spectrum::ZERO) {
         let why = "light scattered close to the camera is sampled by connections to the lens only";
         notes.push(format!("its variance is infinite: {why}; its error bars are unreliable"));
     }

@@ -434,58 +434,96 @@ fn a_box_of_fog_in_a_room_does_not_reach_to_the_sky() {
     }
 }
 
-/// A bright wall behind a box of fog that fills the right half of the view, and in which every ray of the right half starts.
-fn half_in_the_fog(sensor: &Value, albedo: f64) -> Stage {
+/// A bright wall behind a box of fog that fills the right half of the view and in which every ray of the right half starts;
+/// `more` besides.
+fn half_in_the_fog(sensor: &Value, albedo: f64, more: &[(&'static str, Value)]) -> Value {
     let film = json!({"type": "hdrfilm", "width": 6, "height": 6, "rfilter": {"type": "box"}});
-    let wall = lamp_panel([0.0, 0.0, -3.0], 9.0, 1.0);
-    let wall = with(
-        wall,
-        &[("to_world", json!([{"type": "scale", "value": 9}, {"type": "translate", "value": [0, 0, -3]}]))],
-    );
-    Stage::new(&scene(&[
+    let placed = json!([{"type": "scale", "value": 9}, {"type": "translate", "value": [0, 0, -3]}]);
+    let wall = with(lamp_panel([0.0; 3], 1.0, 1.0), &[("to_world", placed)]);
+    let mut parts = vec![
         ("sensor", with(sensor.clone(), &[("film", film)])),
         ("fog", null_box([0.0, -3.0, -2.0], [3.0, 3.0, 2.0], Some(medium(0.4, albedo, 0.0)))),
         ("wall", wall),
-    ]))
+    ];
+    parts.extend_from_slice(more);
+    scene(&parts)
+}
+
+fn look(z: f64) -> Value {
+    json!({"type": "lookat", "origin": [0, 0, z], "target": [0, 0, 0], "up": [0, 1, 0]})
+}
+
+/// Its rays start at z = 0.5.
+fn parallel() -> Value {
+    json!({"type": "orthographic", "near_clip": 0.5,
+        "to_world": [{"type": "scale", "value": [1.5, 1.5, 1]}, look(1.0)]})
+}
+
+/// What a pixel shows, image by image.
+fn column(images: &[Vec<Spectrum>], index: usize) -> Vec<f64> {
+    images.iter().map(|image| f64::from(image[index].x)).collect()
+}
+
+fn straddling(scene: &Value) -> Stage {
+    let stage = Stage::new(scene);
+    let said = &stage.setup.warnings;
+    assert!(matches!(said.as_slice(), [one] if one.contains("its rays start in several")), "{said:?}");
+    stage
 }
 
 /// By the sensor's one medium, the left half was as dark as the right one.
 #[test]
 fn rays_of_one_camera_start_in_several_media() {
-    let look = |z: f64| json!({"type": "lookat", "origin": [0, 0, z], "target": [0, 0, 0], "up": [0, 1, 0]});
-    let parallel = json!({"type": "orthographic", "near_clip": 0.5,
-        "to_world": [{"type": "scale", "value": [1.5, 1.5, 1]}, look(1.0)]});
     let near = json!({"type": "perspective", "fov": 40, "near_clip": 3.5, "to_world": [look(4.0)]});
-    let lens = json!({"type": "thinlens", "fov": 40, "aperture_radius": 0.5, "focus_distance": 1.5, "to_world": [look(0.5)]});
+    let lens = json!({"type": "thinlens", "fov": 40, "aperture_radius": 0.5, "focus_distance": 1.5,
+        "to_world": [look(0.5)]});
     let mut claims = Claims::new();
-    for (name, sensor) in [("parallel", &parallel), ("near plane", &near), ("lens", &lens)] {
-        let (dark, bright) = (half_in_the_fog(sensor, 0.0), half_in_the_fog(sensor, 0.8));
-        let said = &dark.setup.warnings;
-        assert!(
-            matches!(said.as_slice(), [one] if one.contains("start in several media")),
-            "{name}: {said:?}"
-        );
-        let renders = |stage: &Stage, set, first: u64| stage.renders(set, 64, first..first + 12);
-        let pt = renders(&dark, Strategies::PT, 0);
-        for (first, (method, set)) in (1000..).zip(METHODS) {
-            let [found, others] = [renders(&dark, set, 1000 * first), pt.clone()];
-            let of = |images: &[Vec<Spectrum>]| Sample::of(images, dark.width());
-            claims.equal(&format!("{name}, {method}"), &of(&found), &of(&others));
-            let left = |image: &Vec<Spectrum>| f64::from(image[6 * 2].x);
-            if sensor != &lens {
-                claims.mean(
-                    &format!("{name}, {method}, left"),
-                    &found.iter().map(left).collect::<Vec<_>>(),
-                    1.0,
-                );
+    for (name, sensor) in [("parallel", parallel()), ("near plane", near), ("lens", lens)] {
+        let [dark, bright] = [0.0, 0.8].map(|albedo| straddling(&half_in_the_fog(&sensor, albedo, &[])));
+        let of = |images: &[Vec<Spectrum>]| Sample::of(images, dark.width());
+        let pt = of(&dark.renders(Strategies::PT, 64, 0..12));
+        for (first, (method, set)) in (1..).zip(METHODS) {
+            let found = dark.renders(set, 64, 1000 * first..1000 * first + 12);
+            claims.equal(&format!("{name}, {method}"), &of(&found), &pt);
+            if name != "lens" {
+                claims.mean(&format!("{name}, {method}, left"), &column(&found, 6 * 2), 1.0);
             }
         }
         let [pt, all] = [(Strategies::PT, 0), (Strategies::BDPT, 1000)]
-            .map(|(set, first)| Sample::of(&renders(&bright, set, first), bright.width()));
+            .map(|(set, first)| of(&bright.renders(set, 64, first..first + 12)));
         claims.equal(&format!("{name}, bdpt in white fog"), &all, &pt);
     }
-    let absorbed = half_in_the_fog(&parallel, 0.0).renders(Strategies::BDPT, 64, 0..12);
-    let right: Vec<f64> = absorbed.iter().map(|image| f64::from(image[6 * 2 + 4].x)).collect();
-    claims.mean("parallel, right", &right, (-0.4f64 * 2.5).exp());
+    claims.settle();
+}
+
+/// The right half lies in one box of fog, or in two that overlap.
+#[test]
+fn rays_that_start_in_overlapping_fog_pass_through_all_of_it() {
+    let smoke = null_box([-0.1, -3.0, -1.0], [3.0, 3.0, 1.0], Some(medium(0.3, 0.0, 0.0)));
+    let mut claims = Claims::new();
+    for (more, depth) in [(vec![], 0.4 * 2.5), (vec![("smoke", smoke)], 0.4 * 2.5 + 0.3 * 1.5f64)] {
+        let stage = straddling(&half_in_the_fog(&parallel(), 0.0, &more));
+        assert_eq!(stage.setup.scene.media_map.overlaps.is_some(), !more.is_empty());
+        for (name, set) in METHODS {
+            let right = column(&stage.renders(set, 64, 0..12), 6 * 2 + 4);
+            claims.mean(&format!("{name} through {depth}"), &right, (-depth).exp());
+        }
+    }
+    claims.settle();
+}
+
+/// A plate that measures, half of it in fog.
+#[test]
+fn rays_of_an_irradiancemeter_start_on_either_side_of_a_boundary() {
+    let plate = with(floor(0.0, 1.0, 0.5), &[("meter", json!({"type": "irradiancemeter"}))]);
+    let fog = null_box([0.0, -1.0, -2.0], [2.0, 1.0, 2.0], Some(medium(1.0, 0.0, 0.0)));
+    let stage =
+        straddling(&scene(&[("plate", plate), ("fog", fog), ("lamp", lamp_ball([0.0, 3.0, 0.0], 0.5, 1.0))]));
+    let mut claims = Claims::new();
+    let [pt, lt, all] = METHODS.map(|(_, set)| column(&stage.renders(set, 4096, 0..12), 0));
+    for (name, found) in [("lt", lt), ("bdpt", all)] {
+        let ratio: Vec<f64> = found.iter().zip(&pt).map(|(found, pt)| found - pt).collect();
+        claims.mean(name, &ratio, 0.0);
+    }
     claims.settle();
 }

@@ -87,6 +87,7 @@ fn aimed_starts_show_the_same() {
     let mut claims = Claims::new();
     for (name, scene) in [("lamps", lamps()), ("outdoors", outdoors()), ("fire", fire())] {
         let mut stage = Stage::new(&with(scene, &[("glass", glass.clone())]));
+        assert!(stage.setup.scene.aimed_starts().is_some(), "{name}: nothing to aim at");
         let mut measure = |strategies: Strategies, starts: LightStarts, first: u64| {
             stage.setup.integrator.options.effort = Effort { starts, ..Effort::default() };
             Sample::of(&stage.renders(strategies, 100, first..first + 24), stage.width())

@@ -159,12 +159,17 @@ impl Estimator {
 
     fn starts(&self, setup: &Setup, strategies: Strategies, sky: Sky) -> LightStarts {
         let applies = match self.starts {
-            Some(LightStarts::Aimed) => strategies.need_light_walks(),
+            Some(LightStarts::Aimed) => strategies.need_light_walks() && setup.scene.aimed_starts().is_some(),
             _ => strategies.use_starts(&setup.scene, sky),
         };
         if self.starts.is_some() && !applies {
-            let needed = "no strategy in use traces light subpaths or, for learnt starts, connects to a sky";
-            complain(&format!("warning: --starts has no effect: {needed}"));
+            let why = match self.starts {
+                Some(LightStarts::Aimed) if strategies.need_light_walks() => {
+                    "no light sets out for glass, smooth metal or a medium in a shape less than half as wide as the scene"
+                }
+                _ => "no strategy in use traces light subpaths or, for learnt starts, connects to a sky",
+            };
+            complain(&format!("warning: --starts has no effect: {why}"));
         }
         self.starts.filter(|_| applies).unwrap_or_default()
     }

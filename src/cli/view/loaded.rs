@@ -48,8 +48,8 @@ impl Loaded {
         }
         let placement = setup.placement().map(<[TransformStep]>::to_vec);
         let home = placement.clone().map(|steps| home(&setup, &steps));
-        let MediaMap { sensor, sensor_straddles, .. } = setup.scene.media_map;
-        let (film, medium) = (setup.film.clone(), (!sensor_straddles).then_some(sensor));
+        let MediaMap { sensor, sensor_media, .. } = &setup.scene.media_map;
+        let (film, medium) = (setup.film.clone(), sensor_media.is_empty().then_some(*sensor));
         Ok(Self { setup, settings, film, placement: placement.ok(), medium, home })
     }
 

@@ -147,12 +147,11 @@ impl<'j> Node<'j> {
             Json::Object(entries) if entries.len() == 1 => entries[0].0.replace('_', "").to_lowercase(),
             _ => String::new(),
         };
+        let (is_step, in_list) = (steps::WORDS.contains(&only.as_str()), self.name().ends_with(']'));
         let tag = tags::by_name(self.name());
         let remedy = match plugins::plugins_of(tag).as_slice() {
-            _ if steps::WORDS.contains(&only.as_str()) => {
-                let step = format!("{{\"type\": \"{only}\", ...}}");
-                format!("write {}", if self.name().ends_with(']') { step } else { format!("[{step}]") })
-            }
+            _ if is_step && in_list => format!("write {{\"type\": \"{only}\", ...}}"),
+            _ if is_step && self.name() == "to_world" => format!("write [{{\"type\": \"{only}\", ...}}]"),
             [] => "add \"type\"".to_owned(),
             [kind] => format!("add \"type\": \"{kind}\""),
             known => format!("add \"type\", one of {}", known.join(", ")),

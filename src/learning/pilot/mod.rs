@@ -352,8 +352,10 @@ impl Pilots<'_> {
         };
         let starts = |sky: Sky| match (self.decided.starts, knows) {
             _ if !strategies.use_starts(self.scene, sky) => vec![LightStarts::Emitted],
+            (Some(LightStarts::Aimed), _) | (None, LightStarts::Aimed) if !walks => {
+                vec![LightStarts::Emitted]
+            }
             (Some(starts), _) => vec![starts],
-            (None, LightStarts::Aimed) if !walks => vec![LightStarts::Emitted],
             (None, LightStarts::Emitted) => vec![LightStarts::Emitted],
             (None, other) => vec![LightStarts::Emitted, other],
         };

@@ -63,7 +63,7 @@ impl Builder<'_> {
             true => vec![false; media.len()],
             false => unseen.shut_in(&media, &open),
         };
-        let sensor_straddles = sensor_media.len() > 1;
+
         // Parallel rays start all over a plane: in a shape here, out of it there.
         if !camera.sensor.is_parallel() {
             unseen.warn(&self.names(), camera.location);
@@ -82,7 +82,7 @@ impl Builder<'_> {
             media_map: MediaMap {
                 outside,
                 sensor: sensor_medium,
-                sensor_straddles,
+                sensor_media,
                 known,
                 overlaps,
                 nowhere,

@@ -68,14 +68,15 @@ impl Setup {
         // What was learnt from another viewpoint does not apply here.
         (self.scene.lights.learnt, self.scene.lights.endings) = (Memo::default(), Memo::default());
         self.enter(medium);
-        self.scene.media_map.sensor_straddles = media.len() > 1;
         media.iter().for_each(|medium| self.scene.media_map.shut_in[medium.0 as usize] = false);
+        self.scene.media_map.sensor_media = media;
         Ok(())
     }
 
     /// Puts the camera into `medium`, which then no longer counts as shut in.
     pub fn enter(&mut self, medium: MediumIndex) {
-        (self.scene.media_map.sensor, self.scene.media_map.sensor_straddles) = (medium, false);
+        self.scene.media_map.sensor = medium;
+        self.scene.media_map.sensor_media.clear();
         self.scene.media_map.shut_in[medium.0 as usize] = false;
     }
 

@@ -20,8 +20,8 @@ pub(super) struct Surveyed {
     pub known: Known,
     pub survey: Survey,
     pub sensor_medium: MediumIndex,
-    /// All that are seen where rays of a camera start that states none.
-    pub sensor_media: BTreeSet<MediumIndex>,
+    /// See [`MediaMap::sensor_media`](crate::scene::media::MediaMap::sensor_media).
+    pub sensor_media: Vec<MediumIndex>,
     pub overlaps: Option<Box<Overlaps>>,
     /// Boundaries contradict each other even after that.
     pub contradicts: bool,
@@ -35,7 +35,7 @@ impl Builder<'_> {
         geometry: Geometry,
         camera: &mut Camera<'_>,
     ) -> Result<(Geometry, Surveyed)> {
-        let mut geometry = geometry;
+        let (mut geometry, is_stated) = (geometry, camera.stated.is_some());
         let (mut known, survey) = self.look_around(&geometry, camera);
         let mut overlaps = Overlaps::find(&geometry, &self.surfaces, &survey);
         let mut left = None;
@@ -57,12 +57,12 @@ impl Builder<'_> {
         let (names, surfaces) = (self.names(), &self.surfaces);
         let overlapping = (!overlaps.is_empty()).then_some(&overlaps);
         let locator = Locator { geometry: &geometry, surfaces, known: &known };
-        let sensor_media = match stated {
-            Some(_) => BTreeSet::new(),
-            None => media_before(&locator, overlapping, &camera.sensor, size),
+        let sensor_media = match is_stated {
+            true => Vec::new(),
+            false => media_before(&locator, overlapping, &camera.sensor, size),
         };
-        let across = (sensor_media.len() > 1).then(|| {
-            names.warn_of_camera_across(&sensor_media, location);
+        let across = (!sensor_media.is_empty()).then(|| {
+            names.warn_of_camera_across(&sensor_media, &overlaps, location);
             locator.along(start, Vec3::X).unwrap_or(MediumIndex::VACUUM)
         });
         let alone = || place_camera(&geometry, surfaces, &mut known, start, &names, location);

@@ -67,6 +67,8 @@ pub struct Lights {
     radius: f32,
     /// Transmittance from infinity to the scene: 1, or 0 in fog without end.
     from_infinity: Spectrum,
+    /// Starts of light subpaths that aim at targets.
+    pub aimed: Memo,
     /// What was learnt of paths that reach an image.
     pub learnt: Memo,
     /// What camera subpaths end in, and the links that guide some.
@@ -108,6 +110,7 @@ impl Lights {
             centre,
             radius,
             from_infinity,
+            aimed: Memo::default(),
             learnt: Memo::default(),
             endings: Memo::default(),
         }

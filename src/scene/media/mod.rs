@@ -41,8 +41,9 @@ pub struct MediaMap {
     pub outside: MediumIndex,
     /// The medium around the camera.
     pub sensor: MediumIndex,
-    /// Rays of the camera start in several media. That of each is located, and `sensor` is where nothing is known.
-    pub sensor_straddles: bool,
+    /// All media that rays of the camera start in if these are several; else empty. Each start is located, and where nothing
+    /// is known there, it is in `sensor`.
+    pub sensor_media: Vec<MediumIndex>,
     /// What was found out beforehand.
     pub known: Known,
     /// What lies where boundaries of media overlap; none where none do.
@@ -160,7 +161,7 @@ impl Scene {
     /// The medium that `ray` from the camera starts in.
     #[inline]
     pub fn sensor_medium(&self, ray: &Ray) -> MediumIndex {
-        if self.media_map.sensor_straddles { self.located(ray) } else { self.media_map.sensor }
+        if self.media_map.sensor_media.is_empty() { self.media_map.sensor } else { self.located(ray) }
     }
 
     #[cold]

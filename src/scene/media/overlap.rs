@@ -218,6 +218,11 @@ impl Overlaps {
         self.region(index).map(|region| region.members.as_slice())
     }
 
+    /// The medium that the boundary `shape` adds within; none if it overlaps no other.
+    pub fn inside(&self, shape: u32) -> Option<MediumIndex> {
+        self.boundaries.iter().find(|boundary| boundary.shape == shape).map(|boundary| boundary.inside)
+    }
+
     /// What would be in the region `index` without these boundaries; of a medium itself.
     pub fn base(&self, index: MediumIndex) -> MediumIndex {
         self.region(index).map_or(index, |region| region.base)

@@ -15,12 +15,16 @@ use crate::{
     sensor::Sensor,
     shape::SurfacePoint,
 };
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Points of an emitting shape that are located.
 const POINTS: u32 = 64;
-/// Rays of a camera whose starts are located: as many as find a medium that a fiftieth of them start in.
-const RAYS: u32 = 256;
+/// Rays of a camera whose starts are located...
+const RAYS: usize = 256;
+/// ... unless nothing is seen from so many.
+const LOOKS: usize = 8;
+/// Starts that show that a medium is there: fewer may have seen it past an edge.
+const FEWEST: usize = RAYS / 50;
 
 /// What messages call things by.
 pub(crate) struct Names<'a> {
@@ -166,12 +170,25 @@ impl Names<'_> {
         self.library.warn(location, &text);
     }
 
-    /// The rays of a camera that states no medium start in several `media`.
-    pub(crate) fn warn_of_camera_across(&self, media: &BTreeSet<MediumIndex>, location: &Location) {
-        let names: Vec<String> = media.iter().map(|medium| self.medium(*medium)).collect();
+    /// The rays of a camera that states no medium start in several `media`, some of them regions of `overlaps`.
+    pub(crate) fn warn_of_camera_across(
+        &self,
+        media: &[MediumIndex],
+        overlaps: &Overlaps,
+        location: &Location,
+    ) {
+        let name = |medium: &MediumIndex| match overlaps.members_of(*medium) {
+            None => self.medium(*medium),
+            Some([]) => self.medium(MediumIndex::VACUUM),
+            Some(members) => {
+                let names: Vec<String> = members.iter().map(|one| self.medium(*one)).collect();
+                names.join(" + ")
+            }
+        };
+        let names: Vec<String> = media.iter().map(name).collect();
         let text = format!(
-            "rays of the camera start in several media ({}): each in the one around its start. Mitsuba would start all of \
-             them in the medium that the camera states, or in vacuum",
+            "this camera states no medium, and its rays start in several ({}): each in the one around its start. Mitsuba \
+             would start all of them in vacuum",
             names.join(", ")
         );
         self.library.warn(location, &text);
@@ -238,25 +255,32 @@ pub(crate) fn place_camera(
     located.medium
 }
 
-/// The media that rays of `sensor` start in, as far as they are seen, where its film is so large (pixels).
+/// The media that rays of `sensor`, whose film is so large (pixels), start in, if several are seen; else none.
 pub(crate) fn media_before(
     locator: &Locator<'_>,
     overlaps: Option<&Overlaps>,
     sensor: &Sensor,
     size: Vec2,
-) -> BTreeSet<MediumIndex> {
+) -> Vec<MediumIndex> {
     if locator.known.is_uniform() && overlaps.is_none() {
-        return BTreeSet::new();
+        return Vec::new();
     }
     let mut stream = Stream::new(8, 0, 0, Purpose::Pilot);
-    let start = |_| {
+    let mut seen: BTreeMap<MediumIndex, usize> = BTreeMap::new();
+    for looks in 0..RAYS {
+        if looks == LOOKS && seen.is_empty() {
+            break;
+        }
         let film = size * stream.square();
         let start = sensor.ray(film, sensor.sample_aperture(&mut stream)).ray.origin;
-        let Located { medium, certainty } = locator.locate(start, &mut stream)?;
-        let is_seen = matches!(certainty, Certainty::Seen | Certainty::Unstated);
-        is_seen.then(|| overlaps.map_or(medium, |overlaps| overlaps.at(medium, start, Vec3::X)))
-    };
-    (0..RAYS).filter_map(start).collect()
+        let located = locator.locate(start, &mut stream);
+        if let Some(Located { medium, certainty: Certainty::Seen }) = located {
+            let there = overlaps.map_or(medium, |overlaps| overlaps.at(medium, start, Vec3::X));
+            *seen.entry(there).or_default() += 1;
+        }
+    }
+    seen.retain(|_, count| *count >= FEWEST);
+    if seen.len() > 1 { seen.into_keys().collect() } else { Vec::new() }
 }
 
 impl Placement<'_> {

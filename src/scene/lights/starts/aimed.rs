@@ -20,8 +20,8 @@ const DRAWN: usize = 32;
 const ALL_DRAWN: usize = 1 << 22;
 
 impl Starts {
-    /// Half of what is not left to the emitters aims at `targets`, in proportion to the power that each emitter sends to
-    /// each. None where no light sets out for any.
+    /// Half of what is not left to the emitters aims at `targets`, from those emitters whose light sets out for any. Emitters
+    /// and targets share it in proportion to the power from one to the other. None where there is none.
     pub fn aimed(lights: &Lights, geometry: &Geometry, targets: &[Sphere]) -> Option<Self> {
         let portals: Vec<Portal> = targets.iter().copied().map(Portal::around).collect();
         let pairs = lights.all.len() * portals.len();
@@ -70,6 +70,7 @@ impl Lights {
             };
             start.throughput.max_element() * (start.unlearnt.direction / pdf)
         };
-        drawn.map(power).filter(|power| power.is_finite()).sum::<f32>() / count as f32
+        let sum = drawn.map(power).filter(|power| power.is_finite()).sum::<f32>();
+        self.all[index].emitter.sampling_weight * sum / count as f32
     }
 }
