@@ -505,8 +505,9 @@ fn rays_that_start_in_overlapping_fog_pass_through_all_of_it() {
         let stage = straddling(&half_in_the_fog(&parallel(), 0.0, &more));
         assert_eq!(stage.setup.scene.media_map.overlaps.is_some(), !more.is_empty());
         for (name, set) in METHODS {
-            let right = column(&stage.renders(set, 64, 0..12), 6 * 2 + 4);
-            claims.mean(&format!("{name} through {depth}"), &right, (-depth).exp());
+            let found = stage.renders(set, 64, 0..12);
+            claims.mean(&format!("{name} through {depth}"), &column(&found, 6 * 2 + 4), (-depth).exp());
+            claims.mean(&format!("{name} beside {depth}"), &column(&found, 6 * 2), 1.0);
         }
     }
     claims.settle();
